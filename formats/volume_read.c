@@ -274,7 +274,7 @@ static cw_status read_opened(opened *o, const cw_read_desc *desc, cw_volume *vol
         return cwi_fail(err, CW_ERR_ARGUMENT,
                         "level %zu was asked for; files of this format have no levels",
                         desc->level);
-    if (r->read_slices && desc->array)
+    if (r->read_slices && desc->array && (o->many || !r->holds_pages))
         return refuse_array(desc->array, err);
     if (r->read_slices)
         return r->read_slices(&o->in, o->many ? &o->names : NULL, desc, volume, err);
@@ -370,6 +370,13 @@ cw_status cw_volume_visit(const char *path, const cw_read_desc *desc, size_t com
     return st == CW_OK || visit.called ? st : cwi_fail_in(err, st, path);
 }
 
+/* Returns true for files of which none has images to choose from. */
+static bool is_of_slices(const opened *o)
+{
+    const cwi_volume_reading *r = &o->reader->volume;
+    return r->read_slices && (o->many || !r->holds_pages);
+}
+
 /* Lists the arrays of a file. Slices have no named arrays, and are many files, so their headers
  * are not read. */
 cw_status cw_arrays_list(const char *path, const cw_read_desc *desc, cw_array **arrays,
@@ -390,7 +397,7 @@ cw_status cw_arrays_list(const char *path, const cw_read_desc *desc, cw_array **
     d.max_voxels = UINT64_MAX;
     cw_status st = open_path(&o, path, &d, err);
     o.in.arrays = &list;
-    if (st == CW_OK && !(o.reader && o.reader->volume.read_slices))
+    if (st == CW_OK && !(o.reader && is_of_slices(&o)))
         st = read_opened(&o, &d, &shape, err);
     if (st == CW_OK && list.starved)
         st = cwi_fail_memory(err);

@@ -42,6 +42,8 @@ const cli_synonym cli_synonyms[] = {
      "axis."},
     {"slice thickness|voxel size|pixel size|pixel spacing", "spacing", "--spacing|--voxel",
      NULL},
+    {"no data|no-data|missing value|padding|fill value|invalid value|nan", "nodata", "--nodata",
+     NULL},
     {"roi|region of interest|subvolume|sub-volume|trim", "crop", "--crop|--clip-box|--clip",
      NULL},
     {"unit|scale|mm|millimet|inch|micron|micromet|metre|meter", "unit",

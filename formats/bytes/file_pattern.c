@@ -36,30 +36,58 @@ static int compare_numbers(const char **a, const char **b)
     return order;
 }
 
+/* Returns true at a minus that is the sign of the number behind it: a blank, an underscore or the like is
+ * in front. With `any`, only a digit may not be there. */
+static bool is_sign(const char *start, const char *s, bool any)
+{
+    if (*s != '-' || !is_digit(s[1]))
+        return false;
+    return s == start || strchr("_ (=,[/", s[-1]) || (any && !is_digit(s[-1]));
+}
+
+static bool is_number(const char *start, const char *s, bool any)
+{
+    return is_digit(*s) || is_sign(start, s, any);
+}
+
+/* A place in a name. */
+typedef struct place {
+    const char *start, *at;
+} place;
+
+/* Compares numbers with their signs, and moves behind both. */
+static int compare_signed(place *a, place *b, bool any)
+{
+    const bool is_minus[2] = {is_sign(a->start, a->at, any), is_sign(b->start, b->at, any)};
+    a->at += is_minus[0];
+    b->at += is_minus[1];
+    const int order = compare_numbers(&a->at, &b->at);
+    if (is_minus[0] != is_minus[1])
+        return is_minus[0] ? -1 : 1;
+    return is_minus[0] ? -order : order;
+}
+
+static bool are_numbers(const place *a, const place *b, bool any)
+{
+    return is_number(a->start, a->at, any) && is_number(b->start, b->at, any);
+}
+
 int cwi_natural_order(const char *a, const char *b)
 {
-    const char *s = a, *t = b;
-    while (*s && *t) {
-        int order;
-        if (is_digit(*s) && is_digit(*t))
-            order = compare_numbers(&s, &t);
-        else
-            order = (unsigned char)*s++ - (unsigned char)*t++;
+    place s = {a, a}, t = {b, b};
+    while (*s.at && *t.at) {
+        const int order = are_numbers(&s, &t, false)
+                              ? compare_signed(&s, &t, false)
+                              : (unsigned char)*s.at++ - (unsigned char)*t.at++;
         if (order)
             return order;
     }
-    return *s || *t ? (*s ? 1 : -1) : strcmp(a, b); /* 1 and 01 also differ */
+    return *s.at || *t.at ? (*s.at ? 1 : -1) : strcmp(a, b); /* 1 and 01 also differ */
 }
 
 static int compare_names(const void *a, const void *b)
 {
     return cwi_natural_order(*(char *const *)a, *(char *const *)b);
-}
-
-void cwi_files_sort(cwi_names *names)
-{
-    if (names->count)
-        qsort(names->items, names->count, sizeof *names->items, compare_names);
 }
 
 bool cwi_files_is_pattern(const char *path)
@@ -75,58 +103,104 @@ bool cwi_is_folder(const char *path)
 
 /* --- numbers in names --------------------------------------------------------------------- */
 
-static const char DIGITS[] = "0123456789";
-
 enum { UNLIKE = -2, SAME = -1 };
 
 /* Finds the only number in which two names differ, counted from 0. Returns SAME where they
- * differ by leading zeros at most. */
-static int differing_number(const char *a, const char *b)
+ * differ by leading zeros at most. any: as for is_sign() */
+static int differing_number(const char *a, const char *b, bool any)
 {
+    place s = {a, a}, t = {b, b};
     int found = SAME, number = 0;
-    while (*a && *b) {
-        if (is_digit(*a) && is_digit(*b)) {
-            if (compare_numbers(&a, &b) != 0) {
+    while (*s.at && *t.at) {
+        if (are_numbers(&s, &t, any)) {
+            if (compare_signed(&s, &t, any) != 0) {
                 if (found != SAME)
                     return UNLIKE;
                 found = number;
             }
             number++;
-        } else if (*a++ != *b++) {
+        } else if (*s.at++ != *t.at++) {
             return UNLIKE;
         }
     }
-    return *a || *b ? UNLIKE : found;
+    return *s.at || *t.at ? UNLIKE : found;
 }
 
-static bool number_at(const char *name, int which, double *number)
+static bool number_at(const char *name, int which, bool any, double *number)
 {
-    for (; *name; which--) {
-        name += strcspn(name, DIGITS);
-        const size_t length = strspn(name, DIGITS);
+    for (const char *s = name; *s; which--) {
+        while (*s && !is_number(name, s, any))
+            s++;
+        const double sign = *s == '-' ? -1 : 1;
+        s += *s == '-';
+        const size_t length = strspn(s, "0123456789");
         *number = 0;
         for (size_t i = 0; i < length; i++)
-            *number = 10 * *number + (name[i] - '0');
+            *number = 10 * *number + (s[i] - '0');
+        *number *= sign;
         if (which == 0)
             return length > 0 && length <= 15;
-        name += length;
+        s += length;
     }
     return false;
 }
 
-bool cwi_files_numbers(const cwi_names *names, double *numbers)
+static bool find_numbers(const cwi_names *names, bool any, double *numbers)
 {
     int which = SAME;
     for (size_t i = 1; i < names->count; i++) {
-        const int here = differing_number(names->items[0], names->items[i]);
+        const int here = differing_number(names->items[0], names->items[i], any);
         if (here == UNLIKE || (which != SAME && here != SAME && here != which))
             return false;
         which = here == SAME ? which : here;
     }
     bool good = true;
     for (size_t i = 0; good && i < names->count; i++)
-        good = number_at(names->items[i], which == SAME ? 0 : which, &numbers[i]);
+        good = number_at(names->items[i], which == SAME ? 0 : which, any, &numbers[i]);
     return good;
+}
+
+bool cwi_files_numbers(const cwi_names *names, double *numbers)
+{
+    return find_numbers(names, false, numbers) || find_numbers(names, true, numbers);
+}
+
+/* A name and its number. */
+typedef struct numbered {
+    double number;
+    char *name;
+} numbered;
+
+static int compare_numbered(const void *x, const void *y)
+{
+    const numbered *a = x, *b = y;
+    return a->number != b->number ? (a->number > b->number ? 1 : -1)
+                                  : cwi_natural_order(a->name, b->name);
+}
+
+/* Sorts names such as s-1 and s1: they are alike only where the minus is a sign. */
+static void sort_signed(cwi_names *names)
+{
+    double *numbers = cwi_alloc_array(names->count, sizeof *numbers);
+    numbered *items = cwi_alloc_array(names->count, sizeof *items);
+    const bool has_signs = numbers && items && !find_numbers(names, false, numbers) &&
+                           find_numbers(names, true, numbers);
+    for (size_t i = 0; has_signs && i < names->count; i++)
+        items[i] = (numbered){numbers[i], names->items[i]};
+    if (has_signs)
+        qsort(items, names->count, sizeof *items, compare_numbered);
+    for (size_t i = 0; has_signs && i < names->count; i++)
+        names->items[i] = items[i].name;
+    cwi_free(numbers);
+    cwi_free(items);
+}
+
+void cwi_files_sort(cwi_names *names)
+{
+    if (names->count)
+        qsort(names->items, names->count, sizeof *names->items, compare_names);
+    if (names->count > 1)
+        sort_signed(names);
 }
 
 /* --- a folder ---------------------------------------------------------------------------- */

@@ -5,7 +5,8 @@
 
 #include "formats/bytes/input_file.h"
 
-/* Compares as strcmp(), but numbers in names by their value: slice_9 comes before slice_10. */
+/* Compares as strcmp(), but numbers in names by their value: slice_9 comes before slice_10, and s_-2
+ * before s_1: a minus behind an underscore, a blank or a bracket is a sign. */
 int cwi_natural_order(const char *a, const char *b);
 
 /* Returns true if a path contains one of * ? [ and no file has that very name. */
@@ -20,7 +21,8 @@ bool cwi_files_is_pattern(const char *path);
 CW_NODISCARD cw_status cwi_files_find(cwi_input *in, const char *path, bool deep,
                                       cwi_names *names, size_t *links, cw_error *err);
 
-/* Puts names into natural order. */
+/* Puts names into natural order. Where names are alike only if a minus behind a letter is a sign, as in
+ * s-1 and s1, it is taken as one. */
 void cwi_files_sort(cwi_names *names);
 
 /* Adds the files in the folder of an open input, its own among them, and none below; *links

@@ -7,6 +7,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
+#include <strings.h>
 
 /* --- ImageJ ------------------------------------------------------------------------------- */
 
@@ -58,8 +59,7 @@ static bool is_one_run(const cwi_tiff_file *f)
     return true;
 }
 
-/* Finds the images of stacks over 4 GiB: one directory, and all images after the first one. */
-static cw_status find_images(cwi_tiff_file *f, uint32_t images, cw_error *err)
+cw_status cwi_tiff_find_images(cwi_tiff_file *f, uint32_t images, cw_error *err)
 {
     const cwi_tiff_layout *l = &f->layout;
     uint64_t bytes = (uint64_t)l->rows * l->stored_row; /* below 2^57 */
@@ -88,12 +88,40 @@ static cw_status find_images(cwi_tiff_file *f, uint32_t images, cw_error *err)
     return CW_OK;
 }
 
-/* Orders the pages as channel, slice, frame. Missing counts are 1, and slices take the rest. */
+/* Reads the order of the axes, the fastest first: 'czt', where nothing else is stated. The axes of a
+ * plane may stand in front. */
+static cw_status read_order(const char *text, char letters[4], cw_error *err)
+{
+    size_t length;
+    const char *line = find_line(text, "order", &length);
+    unsigned seen = 0;
+    strcpy(letters, "czt");
+    if (!line || length == 0 || (length == 7 && strncasecmp(line, "default", 7) == 0))
+        return CW_OK;
+    const char *order = line;
+    if (length == 5 && strncasecmp(line, "xy", 2) == 0)
+        order += 2;
+    for (size_t i = 0; i < 3 && order + i < line + length; i++) {
+        letters[i] = (char)(order[i] | 0x20);
+        seen |= letters[i] == 'c' ? 1u : letters[i] == 'z' ? 2u : letters[i] == 't' ? 4u : 0u;
+    }
+    if (seen == 7 && order + 3 == line + length)
+        return CW_OK;
+    return cwi_fail(err, CW_ERR_FORMAT,
+                    "'ImageDescription' says order=%.*s; c, z and t were expected, such as czt",
+                    (int)(length < 20 ? length : 20), line);
+}
+
+/* Orders the pages as the file states, else as channel, slice, frame. Missing counts are 1, and slices
+ * take the rest. */
 static cw_status order_images(const cwi_tiff_file *f, const char *text, cwi_tiff_facts *facts,
                               uint32_t *order, cw_error *err)
 {
     uint32_t c = 1, z = 0, t = 1;
-    cw_status st = find_count(text, "channels", &c, err);
+    char letters[4];
+    cw_status st = read_order(text, letters, err);
+    if (st == CW_OK)
+        st = find_count(text, "channels", &c, err);
     if (st == CW_OK)
         st = find_count(text, "slices", &z, err);
     if (st == CW_OK)
@@ -111,8 +139,16 @@ static cw_status order_images(const cwi_tiff_file *f, const char *text, cwi_tiff
     facts->channels = c;
     facts->slices = z;
     facts->steps = t;
-    for (uint32_t p = 0; p < f->page_count; p++)
-        order[(p / c / z * c + p % c) * z + p / c % z] = p;
+    for (uint32_t p = 0; p < f->page_count; p++) {
+        uint32_t rest = p, at[3] = {0}; /* c, z, t */
+        for (int i = 0; i < 3; i++) {
+            const int axis = letters[i] == 'c' ? 0 : letters[i] == 'z' ? 1 : 2;
+            const uint32_t size = axis == 0 ? c : axis == 1 ? z : t;
+            at[axis] = rest % size;
+            rest /= size;
+        }
+        order[(at[2] * c + at[0]) * z + at[1]] = p;
+    }
     return CW_OK;
 }
 
@@ -127,11 +163,10 @@ static void find_pixels(const cwi_tiff_file *f, const char *text, cwi_tiff_facts
     const char *name = resolution == RESUNIT_INCH         ? "inch"
                        : resolution == RESUNIT_CENTIMETER ? "cm"
                                                           : "";
-    const double usual = cwi_tiff_length(name, strlen(name));
     for (int a = 0; a < 3; a++) {
         const char *line = find_line(text, keys[a], &length);
         line = line ? line : find_line(text, keys[0], &length);
-        facts->unit_mm[a] = line ? cwi_tiff_length(line, length) : usual;
+        cwi_tiff_set_unit(facts, a, line ? line : name, line ? length : strlen(name));
     }
     for (int a = 0; a < 2; a++)
         if (cwi_tiff_rational(f, a ? TIFFTAG_YRESOLUTION : TIFFTAG_XRESOLUTION, &value) &&
@@ -140,8 +175,8 @@ static void find_pixels(const cwi_tiff_file *f, const char *text, cwi_tiff_facts
     const bool stated = find_number(text, "spacing", &value) && value != 0;
     facts->spacing[2] = stated ? fabs(value) : facts->slices > 1 ? 1 : 0;
     if (!stated && facts->slices > 1 && facts->spacing[0] > 0 && facts->unit_mm[2] > 0)
-        snprintf(facts->note, sizeof facts->note,
-                 "ImageJ's description has no 'spacing' of slices, which stands for 1");
+        cwi_tiff_note(facts,
+                      "ImageJ's description has no 'spacing' of slices, which stands for 1");
 }
 
 static void find_values(const char *text, cwi_tiff_facts *facts)
@@ -158,9 +193,9 @@ static void find_values(const char *text, cwi_tiff_facts *facts)
         facts->slope = c1;
         facts->intercept = c0;
     } else {
-        snprintf(facts->note, sizeof facts->note,
-                 "ImageJ's calibration by function %.6g is left out: values are as stored",
-                 function);
+        cwi_tiff_note(facts,
+                      "ImageJ's calibration by function %.6g is left out: values are as stored",
+                      function);
     }
 }
 
@@ -170,7 +205,7 @@ static cw_status describe_imagej(cwi_tiff_file *f, const char *text, cwi_tiff_fa
     uint32_t images = f->page_count;
     cw_status st = find_count(text, "images", &images, err);
     if (st == CW_OK)
-        st = find_images(f, images, err);
+        st = cwi_tiff_find_images(f, images, err);
     if (st == CW_OK)
         st = order_images(f, text, facts, order, err);
     if (st != CW_OK)
@@ -206,8 +241,8 @@ static bool is_ome(const char *text)
     return *text == '<' && (strstr(text, "<OME") || strstr(text, ":OME "));
 }
 
-cw_status cwi_tiff_describe(cwi_tiff_file *f, const char *text, cwi_tiff_facts *facts,
-                            uint32_t *order, cw_error *err)
+cw_status cwi_tiff_describe(cwi_tiff_file *f, const char *text, uint32_t image,
+                            cwi_tiff_facts *facts, uint32_t *order, cw_error *err)
 {
     if (strncmp(text, "\xef\xbb\xbf", 3) == 0)
         text += 3;
@@ -215,12 +250,10 @@ cw_status cwi_tiff_describe(cwi_tiff_file *f, const char *text, cwi_tiff_facts *
     if (strncmp(text, "ImageJ=", 7) == 0)
         return describe_imagej(f, text, facts, order, err);
     if (is_ome(text))
-        return cwi_tiff_ome(f, text, facts, order, err);
-    if (strncmp(text, "{\"shape\":", 9) == 0 && strstr(text, "\"truncated\": true"))
-        return cwi_fail(err, CW_ERR_FORMAT,
-                        "'ImageDescription' says that tifffile wrote one directory for several "
-                        "pages; such files are not read");
+        return cwi_tiff_ome(f, text, image, facts, order, err);
     find_resolution(f, facts);
+    if (*text == '{' && strstr(text, "\"shape\""))
+        return cwi_tiff_shaped(f, text, facts, order, err);
     facts->slices = f->page_count;
     facts->channels = facts->steps = 1;
     for (uint32_t p = 0; p < f->page_count; p++)

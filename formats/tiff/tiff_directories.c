@@ -15,6 +15,7 @@ enum {
     ENTRIES_AT_ONCE = 64,
     ENTRY = 12,
     BIG_ENTRY = 20,
+    ASCII = 2,
     SHORT = 3,
     RATIONAL = 5,
     FIRST_PRIVATE_TAG = 32768,
@@ -167,11 +168,11 @@ static bool add_offset(cwi_tiff_file *f, uint64_t offset, uint32_t *capacity)
     return true;
 }
 
-/* Finds a single value of a type; NULL where there is none. */
+/* Finds the entry of a tag of a type; NULL where there is none. */
 static const unsigned char *find_tag(const cwi_tiff_file *f, uint32_t directory, uint16_t tag,
                                      uint16_t type, tags *t)
 {
-    const size_t head = f->big ? 8 : 2, word = f->big ? 8 : 4;
+    const size_t head = f->big ? 8 : 2;
     unsigned char bytes[8];
     const uint64_t at = f->offsets[directory];
     *t = (tags){.at = at + head};
@@ -179,16 +180,39 @@ static const unsigned char *find_tag(const cwi_tiff_file *f, uint32_t directory,
         return NULL;
     t->count = read_number(f, bytes, head);
     for (const unsigned char *entry; (entry = next_tag(f, t));)
-        if (read_number(f, entry, 2) == tag && read_number(f, entry + 2, 2) == type &&
-            read_number(f, entry + 4, word) == 1)
-            return entry + 4 + word;
+        if (read_number(f, entry, 2) == tag && read_number(f, entry + 2, 2) == type)
+            return entry;
     return NULL;
+}
+
+/* Finds the field of a single value: that itself, or its place. */
+static const unsigned char *find_value(const cwi_tiff_file *f, uint32_t directory, uint16_t tag,
+                                       uint16_t type, tags *t)
+{
+    const size_t word = f->big ? 8 : 4;
+    const unsigned char *entry = find_tag(f, directory, tag, type, t);
+    return entry && read_number(f, entry + 4, word) == 1 ? entry + 4 + word : NULL;
+}
+
+bool cwi_tiff_text(const cwi_tiff_file *f, uint16_t tag, char *text, size_t size)
+{
+    const size_t word = f->big ? 8 : 4;
+    tags t;
+    const unsigned char *entry = find_tag(f, 0, tag, ASCII, &t);
+    if (!entry)
+        return false;
+    const uint64_t count = read_number(f, entry + 4, word);
+    const size_t kept = count < size - 1 ? (size_t)count : size - 1;
+    text[kept] = '\0';
+    if (count <= word)
+        memcpy(text, entry + 4 + word, kept);
+    return count <= word || read_at(f, read_number(f, entry + 4 + word, word), text, kept);
 }
 
 uint16_t cwi_tiff_short(const cwi_tiff_file *f, uint32_t directory, uint16_t tag)
 {
     tags t;
-    const unsigned char *value = find_tag(f, directory, tag, SHORT, &t);
+    const unsigned char *value = find_value(f, directory, tag, SHORT, &t);
     return value ? (uint16_t)read_number(f, value, 2) : 0;
 }
 
@@ -196,7 +220,7 @@ bool cwi_tiff_rational(const cwi_tiff_file *f, uint16_t tag, double *value)
 {
     tags t;
     unsigned char bytes[8];
-    const unsigned char *at = find_tag(f, 0, tag, RATIONAL, &t);
+    const unsigned char *at = find_value(f, 0, tag, RATIONAL, &t);
     if (at && !f->big)
         at = read_at(f, read_number(f, at, 4), bytes, 8) ? bytes : NULL;
     if (at)

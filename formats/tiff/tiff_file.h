@@ -3,6 +3,7 @@
 #ifndef FORMATS_TIFF_TIFF_FILE_H
 #define FORMATS_TIFF_TIFF_FILE_H
 
+#include "formats/bytes/stored_numbers.h"
 #include "formats/tiff/tiff.h"
 
 #include <tiffio.h>
@@ -13,6 +14,7 @@ typedef struct cwi_tiff_layout {
     uint16_t samples, bits, format;
     uint16_t compression, photometric, orientation, predictor;
     cw_type type;
+    cwi_stored stored; /* the form of samples in the file, if not that type */
     bool tiled, turned, low_bit_first;
     uint16_t planes;     /* stored one after another: 1, or one per sample */
     uint32_t tile_width; /* strips: columns */
@@ -22,6 +24,16 @@ typedef struct cwi_tiff_layout {
     size_t row;        /* ... and of a row as the module returns it */
 } cwi_tiff_layout;
 
+/* A page, by what all pages of an image have in common. */
+typedef struct cwi_tiff_page {
+    uint32_t directory;
+    uint32_t columns, rows;
+    uint16_t samples, bits;
+    cw_type type;
+    bool good; /* it can be read */
+    bool compressed, turned;
+} cwi_tiff_page;
+
 typedef struct cwi_tiff_file {
     int fd;
     uint64_t size, at;
@@ -29,7 +41,7 @@ typedef struct cwi_tiff_file {
     TIFF *tiff;
     uint64_t *offsets; /* of the directories in the file's chain */
     uint32_t offset_count;
-    uint32_t *pages; /* directories of full resolution */
+    cwi_tiff_page *pages; /* of full resolution */
     uint32_t page_count;
     uint64_t behind; /* not 0: there is one directory, and the pixels of page_count pages start
                         here, one after another */
@@ -46,6 +58,18 @@ typedef struct cwi_tiff_file {
 /* Finds the directories of the file, and checks everything that they point to against its size.
  * A loop, or a tag's value beyond the end, is an error. */
 CW_NODISCARD cw_status cwi_tiff_walk(cwi_tiff_file *f, cw_error *err);
+
+/* Opens a directory of the chain; finds the layout of the open one. */
+CW_NODISCARD cw_status cwi_tiff_open_directory(cwi_tiff_file *f, uint32_t n, cw_error *err);
+CW_NODISCARD cw_status cwi_tiff_find_layout(cwi_tiff_file *f, cw_error *err);
+
+/* Collects the facts of the open file, and behind them the order of its pages. image: which one of
+ * several */
+CW_NODISCARD cw_status cwi_tiff_take_facts(cwi_tiff_file *f, uint32_t image,
+                                           cwi_tiff_facts *facts, cw_error *err);
+
+/* Adds a decision to those that are reported. */
+void cwi_tiff_note(cwi_tiff_facts *facts, const char *format, ...) CW_PRINTF(2, 3);
 
 /* Clears libtiff's complaints so far. */
 static inline void cwi_tiff_listen(cwi_tiff_file *f)
@@ -80,13 +104,25 @@ CW_NODISCARD cw_status cwi_tiff_ensure_capacity(unsigned char **buffer, size_t *
 uint16_t cwi_tiff_short(const cwi_tiff_file *f, uint32_t directory, uint16_t tag);
 bool cwi_tiff_rational(const cwi_tiff_file *f, uint16_t tag, double *value);
 
-/* Interprets the first directory's description of the pages: ImageJ's, OME's or none. Fills in
- * the facts behind page_count, and the order of pages. The first directory must be open, and
- * the layout that of the first page. */
+/* Reads a text of the first directory, as much as there is room for; false where there is none. */
+bool cwi_tiff_text(const cwi_tiff_file *f, uint16_t tag, char *text, size_t size);
+
+/* Interprets the first directory's description of the pages: ImageJ's, OME's, tifffile's or none.
+ * Fills in the facts behind page_count, and the order of pages. The first directory must be open, and
+ * the layout that of the first page. image: which one of several that OME describes */
 CW_NODISCARD cw_status cwi_tiff_describe(cwi_tiff_file *f, const char *description,
-                                         cwi_tiff_facts *facts, uint32_t *order, cw_error *err);
-CW_NODISCARD cw_status cwi_tiff_ome(const cwi_tiff_file *f, const char *xml,
+                                         uint32_t image, cwi_tiff_facts *facts, uint32_t *order,
+                                         cw_error *err);
+CW_NODISCARD cw_status cwi_tiff_ome(const cwi_tiff_file *f, const char *xml, uint32_t image,
                                     cwi_tiff_facts *facts, uint32_t *order, cw_error *err);
+CW_NODISCARD cw_status cwi_tiff_shaped(cwi_tiff_file *f, const char *json,
+                                       cwi_tiff_facts *facts, uint32_t *order, cw_error *err);
+
+/* Finds the images of a file that has one directory, and all others right after its pixels. */
+CW_NODISCARD cw_status cwi_tiff_find_images(cwi_tiff_file *f, uint32_t images, cw_error *err);
+
+/* Sets the millimetres of an axis, and notes a unit that is not known. */
+void cwi_tiff_set_unit(cwi_tiff_facts *facts, int axis, const char *name, size_t length);
 
 /* Returns the millimetres of a unit of length, and the seconds of one of time; 0: unknown
  * unit. */

@@ -23,8 +23,11 @@ typedef struct parsing {
     uint32_t size[AXIS_COUNT]; /* number of pages; C: of pages that hold all their samples */
     axis axes[AXIS_COUNT];     /* the fastest first */
     size_t depth, elements, images;
-    bool placed;    /* some planes were assigned */
-    char name[256]; /* of the file that contains planes; empty: not stated */
+    uint32_t wanted;    /* number of the image that is read */
+    bool is_listing;    /* images are named, and the first page of the wanted one is found */
+    uint32_t directory; /* of that; NONE: not stated */
+    bool placed;        /* some planes were assigned */
+    char name[256];     /* of the file that contains planes; empty: not stated */
     cw_status status;
     cw_error *err;
 } parsing;
@@ -112,7 +115,7 @@ static cw_status read_length(parsing *p, attributes a, int n)
         return cwi_fail(p->err, CW_ERR_FORMAT, "'%s' of the OME-XML is '%.32s'", names[n][0],
                         text);
     p->facts->spacing[n] = value;
-    p->facts->unit_mm[n] = unit ? cwi_tiff_length(unit, strlen(unit)) : 1e-3;
+    cwi_tiff_set_unit(p->facts, n, unit ? unit : "um", unit ? strlen(unit) : 2);
     return CW_OK;
 }
 
@@ -142,15 +145,19 @@ static uint32_t plane_count(const parsing *p)
 
 static int compare_places(const void *a, const void *b)
 {
-    const uint32_t x = *(const uint32_t *)a, y = *(const uint32_t *)b;
+    const uint32_t x = *(const uint32_t *)a, y = ((const cwi_tiff_page *)b)->directory;
     return (x > y) - (x < y);
+}
+
+static const cwi_tiff_page *find_page(const cwi_tiff_file *f, uint32_t directory)
+{
+    return bsearch(&directory, f->pages, f->page_count, sizeof *f->pages, compare_places);
 }
 
 static cw_status place_page(parsing *p, uint32_t directory, const uint32_t at[AXIS_COUNT])
 {
     const cwi_tiff_file *f = p->file;
-    const uint32_t *page =
-        bsearch(&directory, f->pages, f->page_count, sizeof *f->pages, compare_places);
+    const cwi_tiff_page *page = find_page(f, directory);
     if (!page)
         return cwi_fail(
             p->err, CW_ERR_FORMAT,
@@ -223,14 +230,52 @@ static cw_status fail_elsewhere(parsing *p)
     return cwi_fail(p->err, CW_ERR_FORMAT, "the OME-XML is in another file ('BinaryOnly')");
 }
 
+/* Returns true if a name is among those of the images so far. */
+static bool is_named(const cwi_tiff_facts *facts, const char *name)
+{
+    const size_t length = strlen(name);
+    for (const char *line = facts->names; *line; line = cwi_tiff_next_line(line))
+        if (strncmp(line, name, length) == 0 && line[length] == '\n')
+            return true;
+    return false;
+}
+
+/* Keeps the name of an image, else its identifier. */
+static void add_image(parsing *p, attributes a)
+{
+    const char *name = find_attribute(a, "Name"), *id = find_attribute(a, "ID");
+    const size_t used = strlen(p->facts->names), left = sizeof p->facts->names - used;
+    char number[24];
+    snprintf(number, sizeof number, "%zu", p->images);
+    if (!name || !*name || strchr(name, '\n') || is_named(p->facts, name))
+        name = id && *id && !strchr(id, '\n') && !is_named(p->facts, id) ? id : number;
+    if (strlen(name) + 2 < left)
+        snprintf(p->facts->names + used, left, "%s\n", name);
+    p->facts->image_count++;
+}
+
+/* Keeps the place of the first page of the wanted image. */
+static cw_status list_element(parsing *p, const char *name, attributes a)
+{
+    if (strcmp(name, "Image") == 0)
+        add_image(p, a);
+    if (strcmp(name, "TiffData") == 0 && p->images == p->wanted + 1 && p->directory == NONE &&
+        !parse_whole(a, "IFD", 0, &p->directory))
+        p->directory = NONE; /* told when it is read */
+    return CW_OK;
+}
+
 static cw_status open_element(parsing *p, const char *name, attributes a)
 {
     const bool inside = p->size[AXIS_Z] > 0;
     if (strcmp(name, "BinaryOnly") == 0)
         return fail_elsewhere(p);
-    if (strcmp(name, "Image") == 0 && p->images++ > 0)
-        return cwi_fail(p->err, CW_ERR_FORMAT,
-                        "the OME-XML describes several images; files of one are read");
+    if (strcmp(name, "Image") == 0)
+        p->images++;
+    if (p->is_listing)
+        return list_element(p, name, a);
+    if (p->images > 0 && p->images != p->wanted + 1)
+        return CW_OK;
     if (strcmp(name, "Pixels") == 0 && !inside)
         return read_pixels(p, a);
     if (strcmp(name, "TiffData") == 0 && inside)
@@ -313,34 +358,70 @@ static cw_status finish_parsing(parsing *p)
                           "the OME-XML names no page for slice %u, channel %u, step %u",
                           i % p->size[AXIS_Z], i / p->size[AXIS_Z] % p->size[AXIS_C],
                           i / p->size[AXIS_Z] / p->size[AXIS_C]);
-    if (st == CW_OK && plane_count(p) < p->file->page_count)
-        snprintf(p->facts->note, sizeof p->facts->note,
-                 "left out, as the OME-XML has no place for them: %u pages",
-                 p->file->page_count - plane_count(p));
+    if (st == CW_OK && plane_count(p) < p->file->page_count && p->facts->image_count < 2)
+        cwi_tiff_note(p->facts, "left out, as the OME-XML has no place for them: %u pages",
+                      p->file->page_count - plane_count(p));
     return st;
 }
 
-cw_status cwi_tiff_ome(const cwi_tiff_file *f, const char *xml, cwi_tiff_facts *facts,
-                       uint32_t *order, cw_error *err)
+/* Takes the sizes of the first page of the image for those of all. */
+static cw_status take_first_page(const parsing *p)
+{
+    const cwi_tiff_page *page = find_page(p->file, p->directory == NONE ? 0 : p->directory);
+    if (p->wanted >= p->facts->image_count && p->wanted > 0)
+        return cwi_fail(p->err, CW_ERR_FORMAT, "the OME-XML describes %u images",
+                        p->facts->image_count);
+    if (!page || !page->good)
+        return CW_OK; /* told when the page is placed or read */
+    p->facts->columns = page->columns;
+    p->facts->rows = page->rows;
+    p->facts->samples = page->samples;
+    return CW_OK;
+}
+
+static cw_status parse_document(parsing *p, const char *xml)
 {
     const XML_Memory_Handling_Suite memory = {give_memory, resize_memory, cwi_free};
     const size_t size = strlen(xml);
-    parsing p = {.file = f, .facts = facts, .order = order, .err = err};
+    cw_status st = CW_OK;
+    p->depth = p->elements = p->images = 0;
+    p->expat = XML_ParserCreate_MM(NULL, &memory, NULL);
+    if (!p->expat)
+        return cwi_fail_memory(p->err);
+    XML_SetUserData(p->expat, p);
+    XML_SetElementHandler(p->expat, on_start, on_end);
+    XML_SetStartDoctypeDeclHandler(p->expat, on_doctype);
+    for (size_t at = 0, n; st == CW_OK && at < size; at += n) {
+        n = size - at < CHUNK ? size - at : CHUNK;
+        if (XML_Parse(p->expat, xml + at, (int)n, at + n == size) != XML_STATUS_OK)
+            st = fail_xml(p);
+    }
+    XML_ParserFree(p->expat);
+    return st;
+}
+
+/* Reads the document twice: the first time for the page that the image starts with. */
+cw_status cwi_tiff_ome(const cwi_tiff_file *f, const char *xml, uint32_t image,
+                       cwi_tiff_facts *facts, uint32_t *order, cw_error *err)
+{
+    const size_t size = strlen(xml);
+    parsing p = {.file = f,
+                 .facts = facts,
+                 .order = order,
+                 .wanted = image,
+                 .is_listing = true,
+                 .directory = NONE,
+                 .err = err};
     if (size > LONGEST)
         return cwi_fail(err, CW_ERR_FORMAT, "the OME-XML has %zu bytes; the most are %d", size,
                         LONGEST);
-    p.expat = XML_ParserCreate_MM(NULL, &memory, NULL);
-    if (!p.expat)
-        return cwi_fail_memory(err);
-    XML_SetUserData(p.expat, &p);
-    XML_SetElementHandler(p.expat, on_start, on_end);
-    XML_SetStartDoctypeDeclHandler(p.expat, on_doctype);
-    cw_status st = CW_OK;
-    for (size_t at = 0, n; st == CW_OK && at < size; at += n) {
-        n = size - at < CHUNK ? size - at : CHUNK;
-        if (XML_Parse(p.expat, xml + at, (int)n, at + n == size) != XML_STATUS_OK)
-            st = fail_xml(&p);
-    }
-    XML_ParserFree(p.expat);
+    p.err = NULL; /* the second pass reports errors */
+    const bool is_listed = parse_document(&p, xml) == CW_OK;
+    p.err = err;
+    p.status = CW_OK;
+    p.is_listing = false;
+    cw_status st = is_listed ? take_first_page(&p) : CW_OK;
+    if (st == CW_OK)
+        st = parse_document(&p, xml);
     return st == CW_OK ? finish_parsing(&p) : st;
 }

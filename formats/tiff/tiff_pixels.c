@@ -187,7 +187,8 @@ static bool is_mirrored(const cwi_tiff_layout *l)
 /* Returns true if rows are returned as libtiff returns them. */
 static bool is_plain(const cwi_tiff_layout *l)
 {
-    return l->bits > 1 && l->planes == 1 && !l->turned && l->orientation == ORIENTATION_TOPLEFT;
+    return l->bits > 1 && !l->stored && l->planes == 1 && !l->turned &&
+           l->orientation == ORIENTATION_TOPLEFT;
 }
 
 static void unpack_bits(const unsigned char *bits, size_t count, unsigned char *to, size_t step)
@@ -201,6 +202,23 @@ static void spread_samples(const unsigned char *from, size_t count, size_t size,
 {
     for (size_t i = 0; i < count; i++)
         memcpy(to + i * step * size, from + i * size, size);
+}
+
+/* Converts samples that have a form of their own in the file. */
+static cw_status convert_samples(const cwi_tiff_layout *l, const unsigned char *from,
+                                 size_t count, unsigned char *to, size_t step, cw_error *err)
+{
+    const size_t stored = cwi_stored_size(l->stored, l->type), size = cw_type_size(l->type);
+    if (step == 1) {
+        const size_t good = cwi_stored_convert(l->stored, l->type, from, stored, count, to);
+        return good == count ? CW_OK
+                             : cwi_stored_fail(l->stored, l->type, from + good * stored, err);
+    }
+    for (size_t i = 0; i < count; i++)
+        if (cwi_stored_convert(l->stored, l->type, from + i * stored, stored, 1,
+                               to + i * step * size) != 1)
+            return cwi_stored_fail(l->stored, l->type, from + i * stored, err);
+    return CW_OK;
 }
 
 /* Inverts samples, so that larger is brighter; alpha and other extra samples stay unchanged. */
@@ -226,13 +244,16 @@ static void mirror_row(const cwi_tiff_layout *l, unsigned char *row)
 
 /* Assembles a row. stored: the row of the first plane; each next plane is `plane` bytes
  * further. */
-static void put_row(const cwi_tiff_layout *l, const unsigned char *stored, size_t plane,
-                    unsigned char *to)
+static cw_status put_row(const cwi_tiff_layout *l, const unsigned char *stored, size_t plane,
+                         unsigned char *to, cw_error *err)
 {
+    cw_status st = CW_OK;
     const size_t size = cw_type_size(l->type);
     const size_t count = l->planes > 1 ? l->columns : (size_t)l->columns * l->samples;
-    for (uint16_t p = 0; p < l->planes; p++, stored += plane) {
-        if (l->bits == 1)
+    for (uint16_t p = 0; st == CW_OK && p < l->planes; p++, stored += plane) {
+        if (l->stored)
+            st = convert_samples(l, stored, count, to + p * size, l->planes, err);
+        else if (l->bits == 1)
             unpack_bits(stored, count, to + p, l->planes);
         else if (l->planes > 1)
             spread_samples(stored, count, size, to + p * size, l->planes);
@@ -243,6 +264,7 @@ static void put_row(const cwi_tiff_layout *l, const unsigned char *stored, size_
         turn_round(l, to);
     if (is_mirrored(l))
         mirror_row(l, to);
+    return st;
 }
 
 /* Reads stored rows from one on into memory, as many as one piece holds. */
@@ -300,7 +322,8 @@ cw_status cwi_tiff_rows(cwi_tiff_file *f, uint32_t first, uint32_t count, unsign
         n = n < end - row ? n : end - row;
         for (uint32_t i = 0; st == CW_OK && i < n; i++, stored += l->stored_row) {
             const uint32_t at = row + i - from;
-            put_row(l, stored, plane, to + (is_flipped(l) ? count - 1 - at : at) * l->row);
+            st = put_row(l, stored, plane, to + (is_flipped(l) ? count - 1 - at : at) * l->row,
+                         err);
         }
     }
     return st;

@@ -3,13 +3,16 @@
 
 #include "core/base/memory.h"
 #include "core/base/status.h"
+#include "core/base/text.h"
 #include "formats/bytes/file_pattern.h"
 #include "formats/tiff/tiff_format.h"
 #include "formats/volume/damaged_files.h"
+#include "formats/volume/named_arrays.h"
 #include "formats/volume/slice_spacing.h"
 #include "formats/volume/slice_stack.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -61,7 +64,7 @@ static cw_status check_numbers(const cwi_tiff_facts *f, cw_error *err)
         return cwi_fail(err, CW_ERR_FORMAT, "'XResolution' gives pixels of %g mm",
                         f->pixel_mm[0]);
     if (!is_said(f->step_seconds) || !isfinite(f->slope) || !isfinite(f->intercept) ||
-        f->slope == 0)
+        f->slope == 0 || !isfinite(f->nodata))
         return cwi_fail(err, CW_ERR_FORMAT,
                         "'ImageDescription' has times or values that are not numbers");
     return CW_OK;
@@ -73,10 +76,10 @@ static cw_status check_facts(const cwi_tiff_facts *f, uint64_t file_bytes, cw_er
     const uint32_t max = CWI_TIFF_MAX_PAGES;
     if (f->columns < 1 || f->columns > INT32_MAX || f->rows < 1 || f->rows > INT32_MAX ||
         f->samples < 1 || f->samples > MAX_SAMPLES || f->bits < 1 || f->bits > 64 ||
-        !cw_type_size(f->type) || f->bits > 8 * cw_type_size(f->type) || f->page_count < 1 ||
-        f->page_count > max || f->slices < 1 || f->slices > max || f->channels < 1 ||
-        f->channels > max || f->steps < 1 || f->steps > max || planes_of(f) > f->page_count ||
-        !memchr(f->note, '\0', sizeof f->note))
+        !cw_type_size(f->type) || f->page_count < 1 || f->page_count > max || f->slices < 1 ||
+        f->slices > max || f->channels < 1 || f->channels > max || f->steps < 1 ||
+        f->steps > max || planes_of(f) > f->page_count ||
+        !memchr(f->note, '\0', sizeof f->note) || !memchr(f->names, '\0', sizeof f->names))
         return cwi_fail(err, CW_ERR_BACKEND, "libtiff's answer is not valid");
     if (f->channels > MAX_CHANNELS || (f->channels > 1 && f->samples > 1))
         return cwi_fail(
@@ -88,6 +91,43 @@ static cw_status check_facts(const cwi_tiff_facts *f, uint64_t file_bytes, cw_er
                         f->columns, CWI_PLANES_SHARED);
     cw_status st = check_numbers(f, err);
     return st == CW_OK ? check_claim(f, file_bytes, err) : st;
+}
+
+/* Finds an image by its name, else by its number from 1 on. */
+static cw_status find_image(const cwi_tiff_facts *f, const char *name, uint32_t *image,
+                            cw_error *err)
+{
+    const size_t length = strlen(name);
+    const char *line = f->names, *at = name;
+    int64_t number;
+    for (*image = 0; *line; line = cwi_tiff_next_line(line), ++*image)
+        if (strncmp(line, name, length) == 0 && line[length] == '\n')
+            return CW_OK;
+    if (cwi_parse_int(&at, &number) && !*at && number >= 1 && number <= f->image_count) {
+        *image = (uint32_t)number - 1;
+        return CW_OK;
+    }
+    char names[240];
+    size_t used = 0;
+    for (line = f->names; *line && used + 4 < sizeof names; line = cwi_tiff_next_line(line))
+        used += (size_t)snprintf(names + used, sizeof names - used, "%s'%.*s'",
+                                 used ? ", " : "", (int)strcspn(line, "\n"), line);
+    return cwi_fail(err, CW_ERR_ARGUMENT,
+                    "there is no image '%.60s'; the file has %u: %s (desc->array)", name,
+                    f->image_count, f->image_count ? names : "none has a name");
+}
+
+/* Lists the images for the caller, and marks the one that is read. */
+static void list_images(const cwi_tiff_facts *f, uint32_t image, const cwi_input *in)
+{
+    uint32_t n = 0;
+    for (const char *line = f->names; *line; line = cwi_tiff_next_line(line), n++) {
+        char name[200];
+        snprintf(name, sizeof name, "%.*s", (int)strcspn(line, "\n"), line);
+        cwi_array_list_add(in->arrays, name, "image", 1, false, true);
+        if (n == image)
+            cwi_array_list_choose(in->arrays, name, false);
+    }
 }
 
 /* Reads the facts. order may be NULL; else it is set to an array of the pages' numbers, to be
@@ -130,6 +170,8 @@ static void set_sizes(const cwi_tiff_facts *f, size_t slices, cwi_stack *stack)
     v->dim[2] = slices;
     v->steps = f->steps;
     v->step_seconds = f->step_seconds;
+    v->has_nodata = stack->has_padding = f->has_nodata;
+    v->nodata = stack->padding[0] = stack->padding[1] = f->nodata;
     v->stride[0] = size * (ptrdiff_t)f->samples;
     v->stride[1] = v->stride[0] * (ptrdiff_t)f->columns;
     v->stride[2] = v->stride[1] * (ptrdiff_t)f->rows;
@@ -419,6 +461,24 @@ static void note_facts(const cw_read_desc *desc, cwi_tiff_facts *f)
         cwi_note(desc, "%s", f->note);
 }
 
+/* Reads the facts of the file's image, or of the one that was asked for. */
+static cw_status take_image(slices *s, cw_error *err)
+{
+    uint32_t image = 0;
+    cw_status st = take_facts(s->planes, s->in->fd, s->in->size, &s->facts, &s->order, err);
+    if (st == CW_OK && s->in->array)
+        st = find_image(&s->facts, s->in->array, &image, err);
+    if (st == CW_OK && image > 0) {
+        s->planes->image = image;
+        cwi_free(s->order);
+        s->order = NULL;
+        st = take_facts(s->planes, s->in->fd, s->in->size, &s->facts, &s->order, err);
+    }
+    if (st == CW_OK && s->facts.image_count > 1)
+        list_images(&s->facts, image, s->in);
+    return st;
+}
+
 static cw_status find_stack(slices *s, const cwi_names *names, cwi_stack *stack, cw_error *err)
 {
     cw_status st = CW_OK;
@@ -429,7 +489,7 @@ static cw_status find_stack(slices *s, const cwi_names *names, cwi_stack *stack,
         if (st == CW_OK)
             st = look_into_all(s, err);
     } else {
-        st = take_facts(s->planes, s->in->fd, s->in->size, &s->facts, &s->order, err);
+        st = take_image(s, err);
     }
     if (st == CW_OK)
         st = s->files.count > 1 ? stack_files(s, stack, err)

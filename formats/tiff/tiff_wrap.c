@@ -1,5 +1,4 @@
-/* Wraps libtiff behind plain C: opens files, finds the layouts of pages, and collects the
- * facts. */
+/* Wraps libtiff behind plain C: opens files, and finds the layouts of pages. */
 #define _GNU_SOURCE /* pread */
 #include "core/base/memory.h"
 #include "core/base/status.h"
@@ -123,7 +122,7 @@ static cw_status open_file(cwi_tiff_file *f, int fd, uint64_t size, cw_error *er
                    : cwi_fail(err, CW_ERR_FORMAT, "it cannot be opened: %s", f->complaint);
 }
 
-static cw_status open_directory(cwi_tiff_file *f, uint32_t n, cw_error *err)
+cw_status cwi_tiff_open_directory(cwi_tiff_file *f, uint32_t n, cw_error *err)
 {
     f->page = f->band = -1;
     cwi_tiff_listen(f);
@@ -153,11 +152,19 @@ static cw_status find_type(cwi_tiff_layout *l, cw_error *err)
     static const struct {
         uint16_t bits, format;
         cw_type type;
-    } types[] = {{1, SAMPLEFORMAT_UINT, CW_U8},    {8, SAMPLEFORMAT_UINT, CW_U8},
-                 {16, SAMPLEFORMAT_UINT, CW_U16},  {32, SAMPLEFORMAT_UINT, CW_U32},
-                 {8, SAMPLEFORMAT_INT, CW_I8},     {16, SAMPLEFORMAT_INT, CW_I16},
-                 {32, SAMPLEFORMAT_INT, CW_I32},   {32, SAMPLEFORMAT_IEEEFP, CW_F32},
-                 {64, SAMPLEFORMAT_IEEEFP, CW_F64}};
+        cwi_stored stored;
+    } types[] = {{1, SAMPLEFORMAT_UINT, CW_U8, 0},
+                 {8, SAMPLEFORMAT_UINT, CW_U8, 0},
+                 {16, SAMPLEFORMAT_UINT, CW_U16, 0},
+                 {32, SAMPLEFORMAT_UINT, CW_U32, 0},
+                 {64, SAMPLEFORMAT_UINT, CW_U32, CWI_STORED_U64},
+                 {8, SAMPLEFORMAT_INT, CW_I8, 0},
+                 {16, SAMPLEFORMAT_INT, CW_I16, 0},
+                 {32, SAMPLEFORMAT_INT, CW_I32, 0},
+                 {64, SAMPLEFORMAT_INT, CW_I32, CWI_STORED_I64},
+                 {16, SAMPLEFORMAT_IEEEFP, CW_F32, CWI_STORED_F16},
+                 {32, SAMPLEFORMAT_IEEEFP, CW_F32, 0},
+                 {64, SAMPLEFORMAT_IEEEFP, CW_F64, 0}};
     static const char *const formats[] = {
         "no format",    "unsigned integers", "signed integers", "floats",
         "nothing said", "complex integers",  "complex floats"};
@@ -165,11 +172,12 @@ static cw_status find_type(cwi_tiff_layout *l, cw_error *err)
     for (size_t i = 0; i < sizeof types / sizeof *types; i++)
         if (types[i].bits == l->bits && types[i].format == format) {
             l->type = types[i].type;
+            l->stored = types[i].stored;
             return CW_OK;
         }
     return cwi_fail(err, CW_ERR_FORMAT,
                     "'BitsPerSample' is %u and 'SampleFormat' %u (%s); what is read is 1 bit, "
-                    "integers of 8, 16 and 32, and floats of 32 and 64",
+                    "integers of 8, 16, 32 and 64, and floats of 16, 32 and 64",
                     l->bits, l->format, l->format < 7 ? formats[l->format] : "unknown");
 }
 
@@ -206,10 +214,10 @@ static cw_status find_colours(TIFF *tiff, cwi_tiff_layout *l, cw_error *err)
                    {PHOTOMETRIC_LOGL, " (LogL)"},      {PHOTOMETRIC_LOGLUV, " (LogLuv)"}};
     const char *name = "";
     const bool white_is_zero = l->photometric == PHOTOMETRIC_MINISWHITE;
-    if (white_is_zero && l->format == SAMPLEFORMAT_IEEEFP)
+    if (white_is_zero && (l->format == SAMPLEFORMAT_IEEEFP || l->stored))
         return cwi_fail(err, CW_ERR_FORMAT,
                         "'PhotometricInterpretation' is 0 (white is 0), and how to invert "
-                        "floats is not defined");
+                        "floats or integers of 64 bits is not defined");
     l->turned = white_is_zero;
     if (l->photometric <= PHOTOMETRIC_PALETTE)
         return CW_OK;
@@ -271,7 +279,7 @@ static cw_status check_sizes(TIFF *tiff, cwi_tiff_layout *l, cw_error *err)
 }
 
 /* Finds the layout of the open directory. */
-static cw_status find_layout(cwi_tiff_file *f, cw_error *err)
+cw_status cwi_tiff_find_layout(cwi_tiff_file *f, cw_error *err)
 {
     TIFF *t = f->tiff;
     const bool fax = short_of(t, TIFFTAG_COMPRESSION, 1) >= COMPRESSION_CCITTRLE &&
@@ -314,130 +322,15 @@ static cw_status find_layout(cwi_tiff_file *f, cw_error *err)
 cw_status cwi_tiff_turn_to(cwi_tiff_file *f, uint32_t page, cw_error *err)
 {
     if (f->page != page && (f->page < 0 || !f->behind)) {
-        cw_status st = open_directory(f, f->pages[f->behind ? 0 : page], err);
+        cw_status st =
+            cwi_tiff_open_directory(f, f->pages[f->behind ? 0 : page].directory, err);
         if (st == CW_OK)
-            st = find_layout(f, err);
+            st = cwi_tiff_find_layout(f, err);
         if (st != CW_OK)
             return st;
     }
     f->page = page;
     return CW_OK;
-}
-
-/* --- facts -------------------------------------------------------------------------------- */
-
-static size_t strile_bytes(const cwi_tiff_file *f, const cwi_tiff_layout *l, uint32_t n)
-{
-    const uint32_t band = n % l->bands, left = l->rows - band * l->band_rows;
-    if (l->tiled)
-        return (size_t)TIFFTileSize64(f->tiff);
-    return (left < l->band_rows ? left : l->band_rows) * l->stored_row;
-}
-
-/* Checks that all strips and tiles lie in the file, and that uncompressed ones are long
- * enough. */
-static cw_status check_striles(const cwi_tiff_file *f, uint32_t page, cw_error *err)
-{
-    const cwi_tiff_layout *l = &f->layout;
-    const char *what = l->tiled ? "tile" : "strip";
-    const uint32_t across = (l->columns - 1) / l->tile_width + 1;
-    const uint32_t count = l->tiled ? TIFFNumberOfTiles(f->tiff) : TIFFNumberOfStrips(f->tiff);
-    if (count != (uint64_t)l->bands * across * l->planes)
-        return cwi_fail(err, CW_ERR_FORMAT, "page %u has %u %ss, which are not all of it", page,
-                        count, what);
-    if (f->guessed)
-        return cwi_fail(err, CW_ERR_FORMAT,
-                        "'StripByteCounts' of page %u are too few for its pixels, or more than "
-                        "the file has",
-                        page);
-    for (uint32_t n = 0; n < count; n++) {
-        int bad[2] = {0, 0};
-        const uint64_t at = TIFFGetStrileOffsetWithErr(f->tiff, n, &bad[0]);
-        const uint64_t bytes = TIFFGetStrileByteCountWithErr(f->tiff, n, &bad[1]);
-        if (bad[0] || bad[1] || at == 0 || bytes == 0 || at > f->size || bytes > f->size - at)
-            return cwi_fail(err, CW_ERR_FORMAT,
-                            "%s %u of page %u has %llu bytes at %llu; the file has %llu bytes",
-                            what, n + 1, page, (unsigned long long)bytes,
-                            (unsigned long long)at, (unsigned long long)f->size);
-        if (l->compression == COMPRESSION_NONE && bytes < strile_bytes(f, l, n))
-            return cwi_fail(err, CW_ERR_FORMAT, "%s %u of page %u has %llu bytes; it needs %zu",
-                            what, n + 1, page, (unsigned long long)bytes,
-                            strile_bytes(f, l, n));
-    }
-    return CW_OK;
-}
-
-/* Returns true for a page, not for a thumbnail or a mask. */
-static bool is_page(const cwi_tiff_file *f, uint32_t directory)
-{
-    uint32_t kind;
-    if (TIFFGetField(f->tiff, TIFFTAG_SUBFILETYPE, &kind) != 1)
-        kind = cwi_tiff_short(f, directory, TIFFTAG_OSUBFILETYPE) == OFILETYPE_REDUCEDIMAGE
-                   ? FILETYPE_REDUCEDIMAGE
-                   : 0;
-    return !(kind & (FILETYPE_REDUCEDIMAGE | FILETYPE_MASK)) &&
-           short_of(f->tiff, TIFFTAG_PHOTOMETRIC, 0) != PHOTOMETRIC_MASK;
-}
-
-static cw_status check_alike(const cwi_tiff_layout *a, const cwi_tiff_layout *b, uint32_t page,
-                             cw_error *err)
-{
-    if (a->columns == b->columns && a->rows == b->rows && a->samples == b->samples &&
-        a->type == b->type && a->bits == b->bits)
-        return CW_OK;
-    return cwi_fail(err, CW_ERR_FORMAT,
-                    "page %u is %u x %u, %u x %u bits (%s); the first is %u x %u, %u x %u bits "
-                    "(%s)",
-                    page, b->columns, b->rows, b->samples, b->bits, cw_type_name(b->type),
-                    a->columns, a->rows, a->samples, a->bits, cw_type_name(a->type));
-}
-
-/* Walks through all directories; all pages must have the first page's layout. */
-static cw_status find_pages(cwi_tiff_file *f, cwi_tiff_facts *facts, cwi_tiff_layout *first,
-                            cw_error *err)
-{
-    cw_status st = CW_OK;
-    for (uint32_t n = 0; st == CW_OK && n < f->offset_count; n++) {
-        st = open_directory(f, n, err);
-        if (st != CW_OK || !is_page(f, n))
-            continue;
-        st = find_layout(f, err);
-        if (f->page_count == 0)
-            *first = f->layout;
-        f->pages[f->page_count++] = n;
-        if (st == CW_OK)
-            st = check_alike(first, &f->layout, f->page_count, err);
-        if (st == CW_OK)
-            st = check_striles(f, f->page_count, err);
-        facts->compressed |= f->layout.compression != COMPRESSION_NONE;
-        facts->turned |= f->layout.turned;
-    }
-    if (st == CW_OK && f->page_count == 0)
-        return cwi_fail(err, CW_ERR_FORMAT, "no page has full resolution");
-    return st;
-}
-
-static cw_status take_facts(cwi_tiff_file *f, cwi_tiff_facts *facts, cw_error *err)
-{
-    cwi_tiff_layout first;
-    const char *description = NULL;
-    *facts = (cwi_tiff_facts){.slope = 1};
-    cw_status st = find_pages(f, facts, &first, err);
-    if (st == CW_OK)
-        st = open_directory(f, 0, err);
-    if (st != CW_OK)
-        return st;
-    if (TIFFGetField(f->tiff, TIFFTAG_IMAGEDESCRIPTION, &description) != 1)
-        description = "";
-    facts->columns = first.columns;
-    facts->rows = first.rows;
-    facts->samples = first.samples;
-    facts->bits = first.bits;
-    facts->type = first.type;
-    f->layout = first;
-    st = cwi_tiff_describe(f, description, facts, (uint32_t *)(facts + 1), err);
-    facts->page_count = f->page_count;
-    return st;
 }
 
 /* --- work --------------------------------------------------------------------------------- */
@@ -467,7 +360,7 @@ static cw_status work_on_request(void *state, int fd, const void *request, void 
     if (q.op == CWI_PLANE_PIXELS)
         return copy_rows(f, &q, shared, err);
     cw_status st = open_file(f, fd, q.file_bytes, err);
-    return st == CW_OK ? take_facts(f, shared, err) : st;
+    return st == CW_OK ? cwi_tiff_take_facts(f, q.image, shared, err) : st;
 }
 
 static void *state_new(void)

@@ -95,7 +95,8 @@ void cwi_planes_close(cwi_planes *planes)
 cw_status cwi_planes_facts(cwi_planes *planes, int fd, uint64_t file_bytes, const void **facts,
                            cw_error *err)
 {
-    const cwi_plane_request q = {.op = CWI_PLANE_FACTS, .file_bytes = file_bytes};
+    const cwi_plane_request q = {
+        .op = CWI_PLANE_FACTS, .image = planes->image, .file_bytes = file_bytes};
     *facts = planes->box.shared;
     return cwi_sandbox_run(&planes->box, fd, &q, sizeof q, err);
 }

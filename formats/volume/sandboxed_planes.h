@@ -19,6 +19,7 @@ typedef enum cwi_plane_op {
 typedef struct cwi_plane_request {
     cwi_plane_op op;
     uint32_t plane, first_row, row_count;
+    uint32_t image; /* which one of several in the file */
     uint64_t file_bytes;
 } cwi_plane_request;
 
@@ -37,6 +38,7 @@ typedef struct cwi_planes {
     const char *module;
     const cwi_plane_functions *functions; /* in the process that reads */
     void *state;                          /* also there */
+    uint32_t image;                       /* which one of several in each file; default: 0 */
     cwi_sandbox box;
 } cwi_planes;
 

@@ -208,9 +208,8 @@ static void what_is_not_read_is_refused_by_name(void **state)
         test_page page;
         const char *words;
     } cases[] = {
-        {{.bits = 64}, "'BitsPerSample' is 64 and 'SampleFormat' 1 (unsigned integers); what"},
-        {{.bits = 64, .format = 2}, "64 and 'SampleFormat' 2 (signed integers)"},
-        {{.bits = 16, .format = 3}, "16 and 'SampleFormat' 3 (floats)"},
+        {{.bits = 24}, "'BitsPerSample' is 24 and 'SampleFormat' 1 (unsigned integers); what"},
+        {{.bits = 24, .format = 3}, "24 and 'SampleFormat' 3 (floats)"},
         {{.bits = 32, .format = 5}, "32 and 'SampleFormat' 5 (complex integers)"},
         {{.bits = 64, .format = 6}, "64 and 'SampleFormat' 6 (complex floats)"},
         {{.samples = 5}, "'SamplesPerPixel' is 5; 1 to 4 are read"},
@@ -227,7 +226,7 @@ static void what_is_not_read_is_refused_by_name(void **state)
         {{.compression = 12345}, "'Compression' is 12345"},
         {{.tags = {{32997, 4, 1, two}}}, "'ImageDepth' is 2"},
         {{.tags = {{33629, 4, 2, two}}}, "'UIC2Tag' says that directory 1 has 2 planes"},
-        {{.description = "{\"shape\": [2, 3, 4], \"truncated\": true}"}, "tifffile wrote one"},
+        {{.description = "{\"shape\": [2, 3, 4"}, "the 'shape' of tifffile was expected"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         test_tiff t = {0};

@@ -29,10 +29,13 @@ static void imagej_names_units(void **state)
     const struct {
         const char *unit;
         double mm;
-    } cases[] = {{"um", 1e-3},     {"\\u00B5m", 1e-3}, {"\xc2\xb5m", 1e-3}, {"\xb5m", 1e-3},
-                 {"micron", 1e-3}, {"mm", 1},          {"cm", 10},          {"nm", 1e-6},
-                 {"inch", 25.4},   {"m", 1000},        {"pixel", 0},        {"", 0},
-                 {"furlong", 0},   {"\xc3\x85", 1e-7}};
+    } cases[] = {
+        {"um", 1e-3},          {"\\u00B5m", 1e-3}, {"\xc2\xb5m", 1e-3}, {"\xb5m", 1e-3},
+        {"micron", 1e-3},      {"mm", 1},          {"cm", 10},          {"nm", 1e-6},
+        {"inch", 25.4},        {"m", 1000},        {"pixel", 0},        {"", 0},
+        {"furlong", 0},        {"\xc3\x85", 1e-7}, {"Angstrom", 1e-7},  {"angstroms", 1e-7},
+        {"\\u00C5", 1e-7},     {"pm", 1e-9},       {"Microns", 1e-3},   {"inches", 25.4},
+        {"Micrometers", 1e-3}, {"METRE", 1000}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         char text[128];
         cw_volume v;
@@ -42,6 +45,8 @@ static void imagej_names_units(void **state)
         read_good("a.tif", &v);
         const double mm = cases[i].mm > 0 ? cases[i].mm : 1;
         assert_int_equal(v.known, cases[i].mm > 0 ? CW_KNOWN_UNIT : 0);
+        assert_true((strstr(notes, "the unit 'furlong' is not known") != NULL) ==
+                    (strcmp(cases[i].unit, "furlong") == 0));
         assert_near(v.affine[0][0], 0.2 * mm, 1e-12 * mm);
         assert_near(v.affine[1][1], 0.25 * mm, 1e-12 * mm);
         assert_near(v.affine[2][2], 3 * mm, 1e-12 * mm);
@@ -123,6 +128,8 @@ static void imagej_that_contradicts_the_file_is_not_believed(void **state)
         {"ImageJ=1\nimages=3\nchannels=2\n", 3, "says 2 channels, 1 slices and 1 frames"},
         {"ImageJ=1\nimages=3\nslices=2\nframes=2\n", 3, "says 1 channels, 2 slices and 2"},
         {"ImageJ=1\nchannels=65536\nframes=65536\n", 1, "says 65536 channels, 0 slices"},
+        {"ImageJ=1\nimages=3\norder=czz\n", 3, "says order=czz; c, z and t were expected"},
+        {"ImageJ=1\nimages=3\norder=zctx\n", 3, "says order=zctx;"},
         {"ImageJ=1\nchannels=17\n", 17, "17 channels of 1 samples each; at most 16"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
@@ -269,7 +276,6 @@ static void ome_that_contradicts_the_file_is_not_believed(void **state)
         {"<!DOCTYPE a [<!ENTITY b \"c\">]><OME></OME>", "document type (<!DOCTYPE>)"},
         {deep, "more than 1048576 elements, or 64 inside each other"},
         {"<OME><BinaryOnly MetadataFile=\"a\"/></OME>", "the OME-XML is in another file"},
-        {OME_HEAD OME_SIZES "/></Image><Image/></OME>", "describes several images"},
         {OME_HEAD OME_SIZES "><TiffData><UUID FileName=\"a\"/></TiffData><TiffData>" OME_TAIL,
          "two pages for slice 0, channel 0, step 0"},
         {OME_HEAD OME_SIZES "><TiffData IFD=\"0\"><UUID FileName=\"a\"/></TiffData><TiffData "

@@ -90,6 +90,37 @@ static void numbers_in_names_count_as_numbers(void **state)
     }
 }
 
+/* A minus is a sign where something other than a letter or a digit is in front, or where the names are
+ * alike only then. */
+static void numbers_in_names_may_be_negative(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *names[4]; /* from low to high */
+    } cases[] = {{{"s_-2.tif", "s_-1.tif", "s_0.tif", "s_1.tif"}},
+                 {{"z-10.tif", "z-9.tif", "z-8.tif", "z-7.tif"}},
+                 {{"(-4).tif", "(-3).tif", "(-2).tif", "(-1).tif"}},
+                 {{"z-2.tif", "z-1.tif", "z0.tif", "z1.tif"}},
+                 {{"2026-05-1.tif", "2026-05-2.tif", "2026-05-3.tif", "2026-05-4.tif"}},
+                 {{"cut-1.tif", "cut-2.tif", "cut-3.tif", "cut-4.tif"}}};
+    for (size_t n = 0; n < sizeof cases / sizeof *cases; n++) {
+        char folder[16], name[64];
+        cw_volume v;
+        snprintf(folder, sizeof folder, "minus%zu", n);
+        make_folder(folder);
+        for (size_t k = 0; k < 4; k++) {
+            snprintf(name, sizeof name, "%s/%s", folder, cases[n].names[k]);
+            save_slice(name, (unsigned char)(10 + k));
+        }
+        read_good(folder, &v);
+        assert_string_equal(notes, "");
+        const bool falls = n == 1; /* alike without a sign, so the minus is none */
+        for (size_t z = 0; z < 4; z++)
+            assert_true(cw_volume_value(&v, 0, 0, z) == 10 + (double)(falls ? 3 - z : z));
+        cw_volume_free(&v);
+    }
+}
+
 /* Files of one page are slices, those of several are volumes: the steps of a series. */
 static void slices_are_one_volume_and_stacks_are_steps(void **state)
 {
@@ -279,6 +310,7 @@ int main(void)
         TEST(regions_are_crops),
         TEST(regions_may_cross_rows_of_tiles),
         TEST(numbers_in_names_count_as_numbers),
+        TEST(numbers_in_names_may_be_negative),
         TEST(slices_are_one_volume_and_stacks_are_steps),
         TEST(damaged_slices_are_left_out_if_that_is_asked_for),
         TEST(missing_slices_are_for_gaps_to_decide),
