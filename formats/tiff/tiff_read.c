@@ -4,18 +4,15 @@
 #include "core/base/memory.h"
 #include "core/base/status.h"
 #include "core/base/text.h"
-#include "formats/bytes/file_pattern.h"
 #include "formats/tiff/tiff_format.h"
-#include "formats/volume/damaged_files.h"
 #include "formats/volume/named_arrays.h"
-#include "formats/volume/slice_spacing.h"
+#include "formats/volume/slice_files.h"
 #include "formats/volume/slice_stack.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 enum { MAX_COMPRESSION = 65536, MAX_SAMPLES = 4, MAX_CHANNELS = 16 };
 
@@ -210,15 +207,6 @@ static void set_frame(const cwi_tiff_facts *f, const cw_read_desc *desc, cw_volu
             f->pixel_mm[0], f->pixel_mm[1]);
 }
 
-static cw_status ensure_capacity(cwi_stack *stack, size_t planes, size_t slots, cw_error *err)
-{
-    stack->planes = cwi_alloc_zeroed(planes, sizeof *stack->planes);
-    stack->slots = cwi_alloc_zeroed(slots, sizeof *stack->slots);
-    stack->plane_count = planes;
-    stack->slot_count = slots;
-    return stack->planes && stack->slots ? CW_OK : cwi_fail_memory(err);
-}
-
 static int by_plane(const void *x, const void *y)
 {
     const cwi_slot *a = x, *b = y;
@@ -230,7 +218,7 @@ static cw_status stack_pages(const cwi_tiff_facts *f, const uint32_t *order, cwi
                              cw_error *err)
 {
     const size_t count = planes_of(f);
-    cw_status st = ensure_capacity(stack, f->page_count, count, err);
+    cw_status st = cwi_stack_reserve(stack, f->page_count, count, err);
     if (st != CW_OK)
         return st;
     set_sizes(f, f->slices, stack);
@@ -249,63 +237,9 @@ typedef struct slices {
     cwi_planes *planes;
     const cw_read_desc *desc;
     cwi_names files; /* the TIFF files */
-    cwi_tiff_facts facts;
+    cwi_tiff_facts facts, last; /* of the first file, of the last one */
     uint32_t *order;
 } slices;
-
-/* Returns true for a TIFF file, by name, else by content: a damaged slice counts, too. */
-static bool is_tiff(const cwi_input *in, const char *name)
-{
-    unsigned char head[4];
-    uint64_t size;
-    size_t got = 0;
-    int fd;
-    if (cwi_has_extension(name, ".tif .tiff"))
-        return true;
-    if (cwi_input_open_side(in, name, &fd, &size, NULL) != CW_OK)
-        return false;
-    const bool read = cwi_input_read_at(fd, 0, head, sizeof head, &got, NULL) == CW_OK;
-    close(fd);
-    return read && cwi_tiff_sniff(head, got);
-}
-
-static cw_status find_files(slices *s, const cwi_names *names, cw_error *err)
-{
-    cw_status st = CW_OK;
-    for (size_t i = 0; st == CW_OK && i < names->count; i++)
-        if (is_tiff(s->in, names->items[i]))
-            st = cwi_names_add(&s->files, names->items[i], err);
-    if (st == CW_OK && s->files.count == 0)
-        return cwi_fail(err, CW_ERR_FORMAT, "it holds no TIFF file");
-    if (st == CW_OK && s->files.count < names->count)
-        cwi_note(s->desc, "left out, because they are not TIFF: %zu of its files",
-                 names->count - s->files.count);
-    return st;
-}
-
-static size_t folder_length(const char *name)
-{
-    const char *slash = strrchr(name, '/');
-    return slash ? (size_t)(slash - name) : 0;
-}
-
-/* Checks that all files are in one folder; a pattern may match in several. */
-static cw_status check_folder(const slices *s, cw_error *err)
-{
-    const char *first = s->files.items[0];
-    const size_t length = folder_length(first);
-    if (cwi_files_is_pattern(s->in->path))
-        return CW_OK;
-    for (size_t i = 1; i < s->files.count; i++) {
-        const char *name = s->files.items[i];
-        if (folder_length(name) != length || memcmp(name, first, length) != 0)
-            return cwi_fail(err, CW_ERR_UNSAFE,
-                            "it has TIFF files in several folders, as are '%.80s' and '%.80s'; "
-                            "name one of the folders, or a pattern",
-                            first, name);
-    }
-    return CW_OK;
-}
 
 static cw_status check_alike(const cwi_tiff_facts *a, const cwi_tiff_facts *b, cw_error *err)
 {
@@ -330,120 +264,33 @@ static cw_status check_alike(const cwi_tiff_facts *a, const cwi_tiff_facts *b, c
 }
 
 /* Reads the facts of one of the files; those of the first one are kept. */
-static cw_status look_into(slices *s, const char *name, bool first, cwi_tiff_facts *f,
-                           cw_error *err)
+static cw_status look_into(void *user, int fd, uint64_t size, bool is_first, cw_error *err)
 {
-    uint64_t size;
-    int fd;
-    cw_status st = cwi_input_open_side(s->in, name, &fd, &size, err);
-    if (st != CW_OK)
-        return st;
-    cwi_free(first ? s->order : NULL);
-    s->order = first ? NULL : s->order;
-    st = take_facts(s->planes, fd, size, f, first ? &s->order : NULL, err);
+    slices *s = user;
+    cwi_tiff_facts *f = &s->last;
+    cwi_free(is_first ? s->order : NULL);
+    s->order = is_first ? NULL : s->order;
+    cw_status st = take_facts(s->planes, fd, size, f, is_first ? &s->order : NULL, err);
     if (st == CW_OK && s->desc->skip_damaged && f->compressed)
         st = cwi_planes_try(s->planes, f->page_count, f->rows,
                             (size_t)f->columns * f->samples * cw_type_size(f->type), err);
-    close(fd);
-    if (st == CW_OK && first)
+    if (st == CW_OK && is_first)
         s->facts = *f;
     return st;
 }
 
-/* Leaves a damaged file out if that was asked for. Reading it may have ended the library's
- * process. */
-static cw_status leave_out(slices *s, cwi_damaged *damaged, const char *name,
-                           const cw_error *reason, cw_error *err)
+static cw_status compare_last(void *user, cw_error *err)
 {
-    cw_status st = cwi_damaged_add(damaged, name, "", reason, err);
-    if (st == CW_OK && !s->desc->skip_damaged && s->files.count > 1)
-        return cwi_damaged_fail(&damaged->items[0], err);
-    return st == CW_OK && !s->planes->box.open ? cwi_planes_restart(s->planes, err) : st;
-}
-
-/* Reads the facts of every file, before any pixels. */
-static cw_status look_into_all(slices *s, cw_error *err)
-{
-    cwi_damaged damaged = {0};
-    cw_status st = CW_OK;
-    size_t kept = 0;
-    for (size_t i = 0; st == CW_OK && i < s->files.count; i++) {
-        char *name = s->files.items[i];
-        cwi_tiff_facts f;
-        cw_error why = {0};
-        s->planes->box.done = (double)i / (double)s->files.count;
-        st = look_into(s, name, kept == 0, &f, &why);
-        if (cwi_is_damage(st)) {
-            st = leave_out(s, &damaged, name, &why, err);
-            continue;
-        }
-        if (st != CW_OK)
-            cwi_fail(err, st, "%s", why.message);
-        else if (s->files.count > 1 && (st = check_alike(&s->facts, &f, err)) != CW_OK)
-            cwi_fail_in(err, st, name);
-        s->files.items[i] = s->files.items[kept];
-        s->files.items[kept++] = name; /* those left out gather at the end */
-    }
-    if (st == CW_OK && kept == 0)
-        st = cwi_fail(err, damaged.items[0].status, "%s: %s", damaged.items[0].name,
-                      damaged.items[0].reason);
-    if (st == CW_OK)
-        cwi_damaged_note(&damaged, "left out, because they cannot be read", s->desc);
-    cwi_damaged_free(&damaged);
-    while (st == CW_OK && s->files.count > kept)
-        cwi_free(s->files.items[--s->files.count]);
-    return st;
-}
-
-/* Finds the positions: the numbers in which names differ, else 0, 1, 2 ... */
-static cw_status find_positions(const slices *s, double *positions, cw_error *err)
-{
-    if (!cwi_files_numbers(&s->files, positions)) {
-        for (size_t i = 0; i < s->files.count; i++)
-            positions[i] = (double)i;
-        cwi_note(s->desc, "the files' names do not differ by one number alone: taken in their "
-                          "order, and whether any is missing is not known");
-    }
-    for (size_t i = 1; i < s->files.count; i++)
-        if (positions[i] == positions[i - 1])
-            return cwi_fail(err, CW_ERR_UNSAFE, "'%.80s' and '%.80s' have the same number",
-                            s->files.items[i - 1], s->files.items[i]);
-    return CW_OK;
-}
-
-static cw_status lay_slices(const slices *s, cwi_slices *laid, cw_error *err)
-{
-    double *positions = cwi_alloc_array(s->files.count, sizeof *positions);
-    if (!positions)
-        return cwi_fail_memory(err);
-    cw_status st = find_positions(s, positions, err);
-    if (st == CW_OK)
-        st = cwi_slices_lay(positions, s->files.count, "in their numbers", s->desc->gaps, laid,
-                            err);
-    cwi_free(positions);
-    if (st == CW_OK && laid->finding[0])
-        cwi_note(s->desc, "%s: %s", laid->finding,
-                 s->desc->gaps == CW_GAPS_ALLOW ? "taken as if they were even"
-                                                : "interpolated to even ones");
-    return st;
+    const slices *s = user;
+    return check_alike(&s->facts, &s->last, err);
 }
 
 static cw_status stack_files(slices *s, cwi_stack *stack, cw_error *err)
 {
-    cwi_slices laid = {0};
-    cw_status st = lay_slices(s, &laid, err);
+    size_t count = 0;
+    cw_status st = cwi_slice_files_stack(&s->files, s->desc, stack, &count, err);
     if (st == CW_OK)
-        st = ensure_capacity(stack, s->files.count, laid.count, err);
-    for (size_t i = 0; st == CW_OK && i < s->files.count; i++)
-        stack->planes[i].file = i;
-    for (size_t k = 0; st == CW_OK && k < laid.count; k++) {
-        const cwi_slice *from = &laid.items[k];
-        stack->slots[k] =
-            (cwi_slot){.slice = k, .low = from->low, .high = from->high, .t = from->t};
-    }
-    if (st == CW_OK)
-        set_sizes(&s->facts, laid.count, stack);
-    cwi_slices_free(&laid);
+        set_sizes(&s->facts, count, stack);
     return st;
 }
 
@@ -483,11 +330,15 @@ static cw_status find_stack(slices *s, const cwi_names *names, cwi_stack *stack,
 {
     cw_status st = CW_OK;
     if (names) {
-        st = find_files(s, names, err);
+        const cwi_slice_kind kind = {.name = "TIFF",
+                                     .extensions = ".tif .tiff",
+                                     .sniff = cwi_tiff_sniff,
+                                     .look = look_into,
+                                     .compare = compare_last,
+                                     .user = s};
+        st = cwi_slice_files_find(&kind, s->in, names, s->desc, &s->files, err);
         if (st == CW_OK)
-            st = check_folder(s, err);
-        if (st == CW_OK)
-            st = look_into_all(s, err);
+            st = cwi_slice_files_look(&kind, s->in, s->planes, s->desc, &s->files, err);
     } else {
         st = take_image(s, err);
     }

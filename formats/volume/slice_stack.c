@@ -21,6 +21,15 @@ void cwi_stack_free(cwi_stack *stack)
     *stack = (cwi_stack){0};
 }
 
+cw_status cwi_stack_reserve(cwi_stack *stack, size_t planes, size_t slots, cw_error *err)
+{
+    stack->planes = cwi_alloc_zeroed(planes, sizeof *stack->planes);
+    stack->slots = cwi_alloc_zeroed(slots, sizeof *stack->slots);
+    stack->plane_count = planes;
+    stack->slot_count = slots;
+    return stack->planes && stack->slots ? CW_OK : cwi_fail_memory(err);
+}
+
 /* The reading of a stack. */
 typedef struct reading {
     const cwi_stack *stack;

@@ -43,6 +43,10 @@ typedef struct cwi_stack {
     size_t slot_count;
 } cwi_stack;
 
+/* Allocates planes and slots, all zero. Returns CW_ERR_NO_MEMORY. */
+CW_NODISCARD cw_status cwi_stack_reserve(cwi_stack *stack, size_t planes, size_t slots,
+                                         cw_error *err);
+
 /* Checks limits, then reads (unless desc->header_only). Returns as cwi_source_load(). */
 CW_NODISCARD cw_status cwi_stack_load(const cwi_stack *stack, const cwi_input *in,
                                       cwi_planes *planes, const cw_read_desc *desc,
