@@ -288,6 +288,19 @@ int main(void)
 }
 ]])
 
+add_feature(pictures OPTION CUBEWRIGHT_PICTURES PACKAGES libpng-dev MODULE picture
+  ABOUT "PNG and BMP slices, through libpng"
+  COST "reads no PNG or BMP"
+  LICENCES "libpng (libpng-2.0)"
+  NEEDS "PNG_FOUND=libpng-dev" LIBRARIES PNG::PNG
+  TRIAL [[
+#include <png.h>
+int main(void)
+{
+    return png_create_read_struct(PNG_LIBPNG_VER_STRING, 0, 0, 0) == 0;
+}
+]])
+
 if(CUBEWRIGHT_ISAL)
   find_path(ISAL_INCLUDE isa-l/igzip_lib.h)
   find_library(ISAL_LIBRARY isal)

@@ -97,7 +97,7 @@ static cw_status fail_no_slice(const opened *o, cw_error *err)
     }
     return cwi_fail(
         err, CW_ERR_FORMAT,
-        "none of its %zu files is a slice in a format that is read (DICOM, TIFF)%s; "
+        "none of its %zu files is a slice in a format that is read (DICOM, TIFF, PNG, BMP)%s; "
         "headerless slices need their layout stated (desc->raw)",
         o->names.count, links);
 }

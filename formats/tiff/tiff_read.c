@@ -236,7 +236,7 @@ typedef struct slices {
     const cwi_input *in;
     cwi_planes *planes;
     const cw_read_desc *desc;
-    cwi_names files; /* the TIFF files */
+    cwi_names files;            /* the TIFF files */
     cwi_tiff_facts facts, last; /* of the first file, of the last one */
     uint32_t *order;
 } slices;

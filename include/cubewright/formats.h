@@ -120,7 +120,7 @@ typedef struct cw_read_desc {
     const char *points; /* for a PLOT3D solution: the file of its grid's points; marks it as
                            one */
 
-    /* Slices in files of their own (TIFF, DICOM). */
+    /* Slices in files of their own (TIFF, PNG, BMP, DICOM). */
     const char *series; /* label or UID, as from cw_series_list(); default: the only one */
     cw_gaps gaps;       /* missing or uneven slices; default: CW_ERR_UNSAFE */
     cw_tilt tilt;       /* shifted slices; default: they stay where they are */
@@ -213,7 +213,7 @@ CW_NODISCARD CW_API cw_status cw_volume_visit(const char *path, const cw_read_de
  * no format in it are ignored.
  *
  * *count is 0 when the path is no series, but one volume for cw_volume_read(). This holds for a
- * pattern of slices (DICOM images, TIFF files of one page), for a pattern with a layout (raw),
+ * pattern of slices (DICOM images, TIFF files of one page, PNG, BMP), for a pattern with a layout (raw),
  * and for any other path that is not a pattern.
  *
  * paths       path_count of them
