@@ -3,10 +3,12 @@
 #ifndef FORMATS_NIFTI_NIFTI_H
 #define FORMATS_NIFTI_NIFTI_H
 
-#include "formats/bytes/input_file.h"
+#include "formats/volume/voxel_source.h"
 
 #include <cubewright/label_table.h>
 #include <cubewright/volume.h>
+
+enum { CWI_NIFTI_MAX_HEADER = 540 };
 
 /* The fields that are used; the rest of a header is zero, or ignored. */
 typedef enum cwi_nifti_field {
@@ -64,5 +66,9 @@ typedef struct cwi_nifti_span {
  * read is left out, with a note. Returns CW_ERR_IO, CW_ERR_NO_MEMORY */
 CW_NODISCARD cw_status cwi_nifti_labels(const cwi_input *in, const cwi_nifti_span *span,
                                         cw_label_table *table, char note[200], cw_error *err);
+
+/* Parses a header. image: name of the file of voxels, if that was the one that was named; else NULL */
+CW_NODISCARD cw_status cwi_nifti_parse_header(const cwi_input *in, const char *image,
+                                              cwi_source *src, cw_error *err);
 
 #endif

@@ -1,6 +1,5 @@
 /* Reads NIfTI-1 and NIfTI-2: headers of fixed layout (nifti.nimh.nih.gov); and Analyze 7.5, from which
  * the first one came: it has no magic, and no frame. */
-#define _GNU_SOURCE /* close */
 #include "core/base/memory.h"
 #include "core/base/status.h"
 #include "formats/bytes/byte_order.h"
@@ -12,9 +11,6 @@
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
-#include <unistd.h>
-
-enum { MAX_HEADER = 540 };
 
 const cwi_nifti_layout cwi_nifti_layouts[2] = {
     {348,
@@ -158,7 +154,7 @@ void cwi_nifti_put(const cwi_nifti_layout *layout, unsigned char *header, cwi_ni
 
 /* The header's bytes, and their layout and byte order. */
 typedef struct nifti {
-    unsigned char bytes[MAX_HEADER];
+    unsigned char bytes[CWI_NIFTI_MAX_HEADER];
     const cwi_nifti_layout *layout;
     bool swapped;
     bool is_pair;    /* the voxels are in a separate file */
@@ -195,7 +191,7 @@ static bool has_magic(const nifti *n, const char *magic)
 bool cwi_nifti_sniff(const unsigned char *head, size_t size)
 {
     nifti n = {0};
-    memcpy(n.bytes, head, size < MAX_HEADER ? size : MAX_HEADER);
+    memcpy(n.bytes, head, size < CWI_NIFTI_MAX_HEADER ? size : CWI_NIFTI_MAX_HEADER);
     return size >= 348 && find_layout(&n) &&
            (has_magic(&n, n.layout->one_file) || has_magic(&n, n.layout->pair));
 }
@@ -519,9 +515,8 @@ static cw_status read_frame(const nifti *n, cwi_source *src, cw_error *err)
     return CW_OK;
 }
 
-/* Parses a header. image: name of the file of voxels, if that was the one that was named */
-static cw_status parse_header(const cwi_input *in, const char *image, cwi_source *src,
-                              cw_error *err)
+cw_status cwi_nifti_parse_header(const cwi_input *in, const char *image, cwi_source *src,
+                                 cw_error *err)
 {
     nifti n = {.image = image};
     size_t colours = 1;
@@ -541,60 +536,5 @@ static cw_status parse_header(const cwi_input *in, const char *image, cwi_source
         st = read_labels(in, &n, src, err);
     if (st == CW_OK)
         read_scaling(&n, colours, &src->shape);
-    return st;
-}
-
-/* Returns true for the file of voxels of a pair: named so, and without a header of its own. */
-static bool is_image(const cwi_input *in)
-{
-    unsigned char head[MAX_HEADER];
-    size_t got;
-    bool gzipped;
-    return cwi_has_extension(in->path, ".img .img.gz") &&
-           cwi_stream_head(in->fd, head, sizeof head, &got, &gzipped, NULL) == CW_OK &&
-           !cwi_nifti_sniff(head, got);
-}
-
-/* Opens the header beside the voxels: "head.hdr", or "head.hdr.gz". name: room for both */
-static cw_status open_header(const cwi_input *in, char *name, cwi_input *header, cw_error *err)
-{
-    static const char *const endings[] = {".hdr", ".hdr.gz"};
-    const char *slash = strrchr(in->path, '/'), *image = slash ? slash + 1 : in->path;
-    const size_t stem = strlen(image) - (cwi_has_extension(image, ".gz") ? 7 : 4);
-    cw_status st = CW_OK;
-    *header = *in;
-    header->path = name;
-    header->fd = -1;
-    for (int i = 0; st == CW_OK && header->fd < 0 && i < 2; i++) {
-        memcpy(name, image, stem);
-        strcpy(name + stem, endings[i]);
-        st = cwi_input_find_side(in, name, &header->fd, &header->size, err);
-    }
-    if (st == CW_OK && header->fd < 0)
-        return cwi_fail(err, CW_ERR_FORMAT,
-                        "an .img file has its header beside it, and '%.*s.hdr' is not there; "
-                        "voxels without a header need their layout stated (desc->raw)",
-                        (int)(stem < 200 ? stem : 200), image);
-    return st;
-}
-
-cw_status cwi_nifti_parse(const cwi_input *in, cwi_source *src, cw_error *err)
-{
-    cwi_input header;
-    if (!is_image(in))
-        return parse_header(in, NULL, src, err);
-    const char *slash = strrchr(in->path, '/'), *image = slash ? slash + 1 : in->path;
-    char *name = cwi_alloc_array(strlen(image) + 8, 1);
-    if (!name)
-        return cwi_fail_memory(err);
-    cw_status st = open_header(in, name, &header, err);
-    if (st == CW_OK) {
-        cwi_source_note(src, "the header is '%s', beside it", name);
-        st = parse_header(&header, image, src, err);
-        close(header.fd);
-        if (st != CW_OK)
-            cwi_fail_in(err, st, name);
-    }
-    cwi_free(name);
     return st;
 }
