@@ -170,8 +170,8 @@ static void set_values(const cwi_dicom_sorting *s, cwi_stack *stack)
     cw_volume *v = &stack->shape;
     stack->type = v->type = pixels.type;
     stack->mixed = pixels.mixed;
-    stack->scaled = !same_scaling(s) ||
-                    (!pixels.same_padding && s->desc->nodata == CW_NODATA_FILE);
+    stack->scaled =
+        !same_scaling(s) || (!pixels.same_padding && s->desc->nodata == CW_NODATA_FILE);
     v->slope = stack->scaled ? 1 : s->planes[0].frame.slope;
     v->intercept = stack->scaled ? 0 : s->planes[0].frame.intercept;
     if (stack->scaled)

@@ -18,5 +18,8 @@ bad --nodata 300
 bad --nodata 48.5
 bad --nodata off
 bad --nodata nan
+# what hides a surface is told
+bad --nodata 100
+bad --nodata 100 --stream always
 ls bad.stl 2>/dev/null
 exit 0
