@@ -52,6 +52,9 @@ static void say_what_was_found(const cli_mesh *m)
         cli_say("%s: %zu parts, taken as one mesh", m->path, m->file.parts);
     if (m->file.polygons)
         cli_say("%s: %s polygons cut into triangles", m->path, cli_count(m->file.polygons));
+    if (m->file.crossing)
+        cli_say("%s: %s of the polygons cross themselves: their triangles overlap", m->path,
+                cli_count(m->file.crossing));
     if (m->file.skipped)
         cli_say("%s: %s points and lines left out", m->path, cli_count(m->file.skipped));
     if (m->file.levels)

@@ -268,7 +268,7 @@ static cw_status build_scene(cwi_gltf_reader *r, cw_mesh *mesh, cw_mesh_file *me
         mesh->normals = r->normals;
         r->normals = NULL;
     }
-    return cwi_build_finish(&r->build, mesh, err);
+    return cwi_build_finish(&r->build, mesh, metadata, err);
 }
 
 static cw_status read_scene(cwi_mesh_input *in, bool binary, cw_mesh *mesh,

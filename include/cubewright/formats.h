@@ -357,7 +357,7 @@ typedef struct cw_mesh_file {
     bool local;         /* coordinates were relative to an origin that the file names */
     size_t parts;       /* number of merged parts: objects of OBJ, items of 3MF, primitives of
                            glTF; else 1 */
-    size_t polygons;    /* faces of more than three corners, cut into fans of triangles */
+    size_t polygons;    /* faces of more than three corners, cut into triangles */
     size_t skipped;     /* points, lines and faces of fewer than three corners: left out */
     size_t levels;      /* maximum number of coarser levels of detail of a mesh (MSFT_lod of
                            glTF): no part of the scene, left out */
@@ -369,6 +369,7 @@ typedef struct cw_mesh_file {
     size_t expected_triangles; /* of that STL by its header; 0: a text, which does not say */
     char fault[160]; /* of glTF: a value beyond its range, or bounds that are not those of the
                         positions, neither of which changes the mesh; "": none found */
+    size_t crossing; /* of the polygons: those that cross themselves, whose triangles overlap */
 } cw_mesh_file;
 
 /* Reads a mesh: all parts of the file, merged, in LPS millimetres.
@@ -376,7 +377,8 @@ typedef struct cw_mesh_file {
  * Vertices keep their numbers, also those that no triangle names. Positions keep their bits
  * where the file has single precision. STL shares nothing: its corners at equal coordinates
  * become one vertex, and its facet normals are ignored. Triangles without area are kept. A
- * polygon becomes a fan around its first corner, which is right when the polygon is convex.
+ * polygon becomes a fan around its first corner where that is right, as when it is convex; else it
+ * is cut into triangles by its ears, as seen along the axis along which it is largest.
  * Normals are kept when every vertex has one that is finite, and OBJ does not name two for it.
  * A file without triangles gives a mesh without triangles, and CW_OK.
  *

@@ -1838,6 +1838,7 @@ class cw_mesh_file(Structure):
     truncated: bool
     expected_triangles: int
     fault: Any
+    crossing: int
 
 
 cw_mesh_file._fields_ = [
@@ -1857,6 +1858,7 @@ cw_mesh_file._fields_ = [
     ("truncated", c_bool),
     ("expected_triangles", c_size_t),
     ("fault", c_char * 160),
+    ("crossing", c_size_t),
 ]
 
 
