@@ -20,10 +20,10 @@ check_versions() { # ROOT: prints what differs
     for file in README.md cli/help/library.txt include/docs/README.md tests/examples/CMakeLists.txt; do
         state "$1" "find_package(cubewright $minor REQUIRED)" $file
     done
-    # both begin with the newest version, after what is not released yet
+    # both begin with the newest version
     head -1 "$1/cli/debian/changelog" | grep -q "^cubewright ($version)" ||
         { echo "cli/debian/changelog does not begin with $version"; wrong=1; }
-    grep '^## [0-9]' "$1/CHANGELOG.md" | head -1 | grep -q "^## $version, " ||
+    grep '^## ' "$1/CHANGELOG.md" | head -1 | grep -q "^## $version, " ||
         { echo "CHANGELOG.md does not begin with $version"; wrong=1; }
     number=$(sed -n 's/.* SOVERSION \([0-9]*\)).*/\1/p' "$1/CMakeLists.txt")
     state "$1" "^Package: libcubewright$number\$" cli/debian/control
