@@ -37,6 +37,17 @@ static void say_truncated(const cli_mesh *m)
             cli_count(cli_mesh_triangles(m)), of);
 }
 
+static void say_miscounted(const cli_mesh *m)
+{
+    if (m->file.miscounted)
+        cli_say("%s: the header counts %s facets; the file's size tells %s, which are taken",
+                m->path, cli_count(m->file.expected_triangles),
+                cli_count(cli_mesh_triangles(m)));
+    if (m->file.attribute_bytes)
+        cli_say("%s: %s bytes of attributes behind the facets left out", m->path,
+                cli_count((size_t)m->file.attribute_bytes));
+}
+
 static void say_what_was_found(const cli_mesh *m)
 {
     size_t vertices = m->mesh.vertex_count;
@@ -46,6 +57,7 @@ static void say_what_was_found(const cli_mesh *m)
             cli_count(cli_mesh_triangles(m)),
             m->file.known & CW_KNOWN_UNIT ? "" : " (no unit given: taken as mm)");
     say_truncated(m);
+    say_miscounted(m);
     if (m->part_count > 1)
         cli_say("%s: %zu parts", m->path, m->part_count);
     else if (!m->parts && m->file.parts > 1)

@@ -370,6 +370,11 @@ typedef struct cw_mesh_file {
     char fault[160]; /* of glTF: a value beyond its range, or bounds that are not those of the
                         positions, neither of which changes the mesh; "": none found */
     size_t crossing; /* of the polygons: those that cross themselves, whose triangles overlap */
+    bool
+        miscounted; /* the header of an STL counts expected_triangles; its size tells another number,
+                        which was taken */
+    uint64_t
+        attribute_bytes; /* behind the facets of an STL, as many as these state: left out */
 } cw_mesh_file;
 
 /* Reads a mesh: all parts of the file, merged, in LPS millimetres.

@@ -1839,6 +1839,8 @@ class cw_mesh_file(Structure):
     expected_triangles: int
     fault: Any
     crossing: int
+    miscounted: bool
+    attribute_bytes: int
 
 
 cw_mesh_file._fields_ = [
@@ -1859,6 +1861,8 @@ cw_mesh_file._fields_ = [
     ("expected_triangles", c_size_t),
     ("fault", c_char * 160),
     ("crossing", c_size_t),
+    ("miscounted", c_bool),
+    ("attribute_bytes", c_uint64),
 ]
 
 
