@@ -75,6 +75,12 @@ static void say_what_was_found(const cli_mesh *m)
     if (m->file.hidden)
         cli_say("%s: %zu part%s hidden by a scale of 0, as an animation does, left out",
                 m->path, m->file.hidden, m->file.hidden == 1 ? "" : "s");
+    if (m->file.fault[0])
+        cli_say("%s: the file breaks a rule of glTF, and is read all the same: %s", m->path,
+                m->file.fault);
+    if (m->file.not_applied[0])
+        cli_say("%s: drawn otherwise by viewers, since these are not applied: %s", m->path,
+                m->file.not_applied);
     say_left_out(m, m->file.supports, m->file.support_triangles, "for support");
     say_left_out(m, m->file.others, m->file.other_triangles, "of type 'other'");
 }

@@ -375,6 +375,9 @@ typedef struct cw_mesh_file {
                         which was taken */
     uint64_t
         attribute_bytes; /* behind the facets of an STL, as many as these state: left out */
+    char not_applied
+        [160]; /* of glTF: what viewers apply and this reader does not, such as "skins"; "":
+                              nothing */
 } cw_mesh_file;
 
 /* Reads a mesh: all parts of the file, merged, in LPS millimetres.

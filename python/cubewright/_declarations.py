@@ -1841,6 +1841,7 @@ class cw_mesh_file(Structure):
     crossing: int
     miscounted: bool
     attribute_bytes: int
+    not_applied: Any
 
 
 cw_mesh_file._fields_ = [
@@ -1863,6 +1864,7 @@ cw_mesh_file._fields_ = [
     ("crossing", c_size_t),
     ("miscounted", c_bool),
     ("attribute_bytes", c_uint64),
+    ("not_applied", c_char * 160),
 ]
 
 
