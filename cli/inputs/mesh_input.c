@@ -81,6 +81,10 @@ static void say_what_was_found(const cli_mesh *m)
     if (m->file.not_applied[0])
         cli_say("%s: drawn otherwise by viewers, since these are not applied: %s", m->path,
                 m->file.not_applied);
+    if (m->file.modifier_triangles)
+        cli_say(
+            "%s: modifiers of the slicer, with %s triangles, left out: they are no parts of the print",
+            m->path, cli_count(m->file.modifier_triangles));
     say_left_out(m, m->file.supports, m->file.support_triangles, "for support");
     say_left_out(m, m->file.others, m->file.other_triangles, "of type 'other'");
 }

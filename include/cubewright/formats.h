@@ -378,6 +378,9 @@ typedef struct cw_mesh_file {
     char not_applied
         [160]; /* of glTF: what viewers apply and this reader does not, such as "skins"; "":
                               nothing */
+    size_t
+        modifier_triangles; /* of 3MF: of modifiers, blockers of supports and negative volumes, as slicers
+                                  call them: left out */
 } cw_mesh_file;
 
 /* Reads a mesh: all parts of the file, merged, in LPS millimetres.

@@ -1842,6 +1842,7 @@ class cw_mesh_file(Structure):
     miscounted: bool
     attribute_bytes: int
     not_applied: Any
+    modifier_triangles: int
 
 
 cw_mesh_file._fields_ = [
@@ -1865,6 +1866,7 @@ cw_mesh_file._fields_ = [
     ("miscounted", c_bool),
     ("attribute_bytes", c_uint64),
     ("not_applied", c_char * 160),
+    ("modifier_triangles", c_size_t),
 ]
 
 
