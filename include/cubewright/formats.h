@@ -292,7 +292,7 @@ CW_NODISCARD CW_API cw_status cw_series_list(const char *path, const cw_read_des
 CW_API void cw_series_free(cw_series *series);
 
 /* Reads the names and colours of labels from a file: a colour table of FreeSurfer or 3D Slicer,
- * descriptions of ITK-SNAP, the CSV of 3D Slicer, the TSV of BIDS, JSON of niivue, XML with a
+ * descriptions of ITK-SNAP, the CSV of 3D Slicer, the TSV of BIDS, JSON of niivue and nnU-Net, XML with a
  * LabelTable as of Connectome Workbench, the image-label of OME-Zarr, or plain lines such as
  * "5 liver" or "5;LIV;liver". The content decides which; the extension counts only where the
  * content is of none. Where A of a number, a name and R G B A may be opacity or transparency,
