@@ -98,7 +98,7 @@ CW_NODISCARD cw_status cwi_gltf_check(const char *json, size_t size, cw_error *e
  * Returns CW_ERR_FORMAT as cwi_gltf_check() does. */
 CW_NODISCARD cw_status cwi_gltf_check_look(const char *json, size_t size, cw_error *err);
 
-/* What viewers draw otherwise than it is read. */
+/* Features of a scene that viewers apply, and this reader does not. */
 enum {
     CWI_GLTF_DRAWN_MORPHED = 1,   /* weights of morph targets */
     CWI_GLTF_DRAWN_SKINNED = 2,   /* skins, at rest */

@@ -3,7 +3,7 @@
 #include "formats/mesh/face_polygons.h"
 #include "core/base/memory.h"
 #include "core/base/status.h"
-#include "core/geometry/clip_ears.h"
+#include "core/mesh/clip_ears.h"
 
 #include <math.h>
 #include <string.h>

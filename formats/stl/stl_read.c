@@ -108,7 +108,7 @@ static void take_words(const char *text, cw_mesh *mesh, cw_mesh_file *metadata)
 
 /* --- binary ------------------------------------------------------------------------------ */
 
-/* What is behind the header: facets, and the bytes that follow each. */
+/* The facets behind the header, and the bytes that follow each. */
 typedef struct layout {
     size_t count;
     uint64_t attribute_bytes; /* of all facets */

@@ -2,7 +2,7 @@
 #ifndef SIMPLIFY_CUT_SECTION_H
 #define SIMPLIFY_CUT_SECTION_H
 
-#include "core/geometry/clip_ears.h"
+#include "core/mesh/clip_ears.h"
 #include "simplify/cut/cut_state.h"
 
 /* loop: the number of the node's loop */

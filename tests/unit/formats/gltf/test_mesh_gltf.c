@@ -198,7 +198,7 @@ static void what_has_no_scale_is_hidden(void **state)
     cw_mesh_free(&mesh);
 }
 
-/* What viewers apply and this reader does not is named, where it changes what they draw. */
+/* Features that viewers apply and this reader does not are named, if they change the picture. */
 static void what_viewers_draw_otherwise_is_named(void **state)
 {
     (void)state;

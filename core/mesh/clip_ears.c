@@ -1,6 +1,6 @@
 /* Cuts ears from a ring [Meisters1975]: triangles of three nodes that follow each other, with no other
  * node in them. Nodes where the ring is not convex are found by a tree. */
-#include "core/geometry/clip_ears.h"
+#include "core/mesh/clip_ears.h"
 
 #include "core/base/memory.h"
 #include "core/base/status.h"

@@ -1,6 +1,6 @@
 /* Triangles of rings of points in a plane, by clipping ears. */
-#ifndef CORE_GEOMETRY_CLIP_EARS_H
-#define CORE_GEOMETRY_CLIP_EARS_H
+#ifndef CORE_MESH_CLIP_EARS_H
+#define CORE_MESH_CLIP_EARS_H
 
 #include "core/geometry/exact_predicates.h"
 
