@@ -114,7 +114,7 @@ bool Shape::is_kept(const OneRing &ring) const
         const float longest =
             std::max((s.pb - s.pa).sqrnorm(), std::max((s.pa - ring.position).sqrnorm(),
                                                        (s.pb - ring.position).sqrnorm()));
-        if (now < 1e-7f * longest * longest)
+        if (now < 1e-7f * longest * longest && now < before) // needles may stay, and get wider
             return false;
     }
     return true;

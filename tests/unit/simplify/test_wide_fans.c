@@ -66,11 +66,20 @@ static void a_waved_rim_stays_wide(void **state)
     check_fans(1400, 0.5, 5, 0, 2800);
 }
 
+/* Needles may stay as thin as they are, and get wider. */
+static void needles_are_collapsed_to_wider_ones(void **state)
+{
+    (void)state;
+    check_fans(800, 0, 4e3, 0, 100);
+    check_fans(900, 0, 2e3, -3e3, 100);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_wide_fan_becomes_narrow),
         cmocka_unit_test(a_waved_rim_stays_wide),
+        cmocka_unit_test(needles_are_collapsed_to_wider_ones),
     };
     if (!cw_simplify_available())
         return 0;
