@@ -370,17 +370,18 @@ typedef struct cw_mesh_file {
     char fault[160]; /* of glTF: a value beyond its range, or bounds that are not those of the
                         positions, neither of which changes the mesh; "": none found */
     size_t crossing; /* of the polygons: those that cross themselves, whose triangles overlap */
-    bool
-        miscounted; /* the header of an STL counts expected_triangles; its size tells another number,
-                        which was taken */
-    uint64_t
-        attribute_bytes; /* behind the facets of an STL, as many as these state: left out */
-    char not_applied
-        [160]; /* of glTF: what viewers apply and this reader does not, such as "skins"; "":
-                              nothing */
-    size_t
-        modifier_triangles; /* of 3MF: of modifiers, blockers of supports and negative volumes, as slicers
-                                  call them: left out */
+
+    /* An STL whose header counts expected_triangles, and whose size tells another number, which was
+     * taken. */
+    bool miscounted;
+    uint64_t attribute_bytes; /* behind the facets of an STL, as they state: left out */
+
+    /* Of glTF: features that viewers apply and this reader does not, such as "skins"; "": none. */
+    char not_applied[160];
+
+    /* Of 3MF: triangles of modifiers, blockers of supports and negative volumes, as slicers call
+     * them: left out. */
+    size_t modifier_triangles;
 } cw_mesh_file;
 
 /* Reads a mesh: all parts of the file, merged, in LPS millimetres.
