@@ -4,6 +4,7 @@
 #include "core/base/status.h"
 #include "formats/bytes/file_pattern.h"
 #include "formats/bytes/inflate_stream.h"
+#include "formats/foreign_files.h"
 #include "formats/raw/raw_format.h"
 #include "formats/vtk/pvd.h"
 #include "formats/vtk/vtk_formats.h"
@@ -73,12 +74,12 @@ static bool sniffs_volume(const cwi_format_driver *f, const unsigned char *head,
     return f->volume.sniff && f->volume.sniff(head, size);
 }
 
-/* Finds a reader by the content, or returns NULL. The meshes of VTK's XML are no volumes, nor
- * are lists. */
+/* Finds a reader by the content, or returns NULL. The meshes of VTK are no volumes, nor are lists. */
 static const cwi_format_driver *find_volume_by_content(const unsigned char *head, size_t size,
                                                        bool gzipped)
 {
-    if (cwi_vtp_sniff(head, size, 0) || cwi_pvd_sniff(head, size))
+    if (cwi_vtp_sniff(head, size, 0) || cwi_vtk_poly_sniff(head, size, 0) ||
+        cwi_pvd_sniff(head, size))
         return NULL;
     for (size_t n = 0; cwi_format_at(n); n++)
         if ((cwi_format_at(n)->volume.gzipped || !gzipped) &&
@@ -124,6 +125,8 @@ cw_status cwi_volume_reader_of(const cwi_input *in, const cwi_format_driver **fo
     size_t size;
     bool gzipped;
     cw_status st = read_head(in, head, &size, &gzipped, err);
+    if (st == CW_OK)
+        st = cwi_refuse_content(in, head, size, err);
     if (st != CW_OK)
         return st;
     *found = find_volume_by_extension(in->path);
@@ -140,6 +143,9 @@ cw_status cwi_volume_reader_of(const cwi_input *in, const cwi_format_driver **fo
                         "volumes that it lists is expected");
     if (mesh || (mesh = find_mesh_by_extension(in->path)))
         return fail_mesh(mesh->name, err);
+    const char *foreign = cwi_name_foreign(in->path, head, size);
+    if (foreign)
+        return cwi_fail(err, CW_ERR_UNSUPPORTED, "this is %s", foreign);
     return cwi_fail(
         err, CW_ERR_FORMAT,
         "neither content nor extension is of a format that is read (%s); a headerless "
@@ -177,6 +183,8 @@ cw_status cwi_mesh_reader_of(const cwi_input *in, const cwi_format_driver **foun
     char names[CWI_FORMAT_LIST];
     size_t size;
     cw_status st = cwi_input_read_at(in->fd, 0, head, sizeof head, &size, err);
+    if (st == CW_OK)
+        st = cwi_refuse_content(in, head, size, err);
     if (st != CW_OK)
         return st;
     *found = find_mesh_by_content(head, size, in->size);
@@ -193,6 +201,9 @@ cw_status cwi_mesh_reader_of(const cwi_input *in, const cwi_format_driver **foun
         return cwi_fail(err, CW_ERR_FORMAT,
                         "this is a volume (%s), not a mesh; 'extract' makes a mesh of it",
                         volume);
+    const char *foreign = cwi_name_foreign(in->path, head, size);
+    if (foreign)
+        return cwi_fail(err, CW_ERR_UNSUPPORTED, "this is %s", foreign);
     return cwi_fail(err, CW_ERR_FORMAT,
                     "neither content nor extension is of a mesh format that is read (%s)",
                     list_mesh_readers(names));

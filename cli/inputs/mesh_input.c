@@ -37,6 +37,17 @@ static void say_truncated(const cli_mesh *m)
             cli_count(cli_mesh_triangles(m)), of);
 }
 
+static void say_miscounted(const cli_mesh *m)
+{
+    if (m->file.miscounted)
+        cli_say("%s: the header counts %s facets; the file's size tells %s, which are taken",
+                m->path, cli_count(m->file.expected_triangles),
+                cli_count(cli_mesh_triangles(m)));
+    if (m->file.attribute_bytes)
+        cli_say("%s: %s bytes of attributes behind the facets left out", m->path,
+                cli_count((size_t)m->file.attribute_bytes));
+}
+
 static void say_what_was_found(const cli_mesh *m)
 {
     size_t vertices = m->mesh.vertex_count;
@@ -46,12 +57,16 @@ static void say_what_was_found(const cli_mesh *m)
             cli_count(cli_mesh_triangles(m)),
             m->file.known & CW_KNOWN_UNIT ? "" : " (no unit given: taken as mm)");
     say_truncated(m);
+    say_miscounted(m);
     if (m->part_count > 1)
         cli_say("%s: %zu parts", m->path, m->part_count);
     else if (!m->parts && m->file.parts > 1)
         cli_say("%s: %zu parts, taken as one mesh", m->path, m->file.parts);
     if (m->file.polygons)
         cli_say("%s: %s polygons cut into triangles", m->path, cli_count(m->file.polygons));
+    if (m->file.crossing)
+        cli_say("%s: %s of the polygons cross themselves: their triangles overlap", m->path,
+                cli_count(m->file.crossing));
     if (m->file.skipped)
         cli_say("%s: %s points and lines left out", m->path, cli_count(m->file.skipped));
     if (m->file.levels)
@@ -60,6 +75,16 @@ static void say_what_was_found(const cli_mesh *m)
     if (m->file.hidden)
         cli_say("%s: %zu part%s hidden by a scale of 0, as an animation does, left out",
                 m->path, m->file.hidden, m->file.hidden == 1 ? "" : "s");
+    if (m->file.fault[0])
+        cli_say("%s: the file breaks a rule of glTF, and is read all the same: %s", m->path,
+                m->file.fault);
+    if (m->file.not_applied[0])
+        cli_say("%s: drawn otherwise by viewers, since these are not applied: %s", m->path,
+                m->file.not_applied);
+    if (m->file.modifier_triangles)
+        cli_say(
+            "%s: modifiers of the slicer, with %s triangles, left out: they are no parts of the print",
+            m->path, cli_count(m->file.modifier_triangles));
     say_left_out(m, m->file.supports, m->file.support_triangles, "for support");
     say_left_out(m, m->file.others, m->file.other_triangles, "of type 'other'");
 }

@@ -129,7 +129,7 @@ cw_status view_choose_mode(view *v, cw_error *err)
         return CW_OK;
     if (v->document.path && v->picture.mode == CW_MODE_MESH && !v->document.source.is_mesh &&
         !args->mesh && !args->iso.given) {
-        args->iso = (cli_number){true, view_suggest_iso(v)};
+        args->iso = (cli_number){.given = true, .value = view_suggest_iso(v)};
         v->state.iso_is_ours = true;
     }
     return CW_OK;

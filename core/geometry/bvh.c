@@ -6,6 +6,7 @@
 #include "core/base/status.h"
 
 #include <float.h>
+#include <stdlib.h>
 #include <string.h>
 
 typedef struct keyed {
@@ -106,9 +107,16 @@ static void set_keys(const float (*boxes)[6], size_t count, keyed *keys)
     }
 }
 
+static int compare_keyed(const void *x, const void *y)
+{
+    const keyed *a = x, *b = y;
+    return a->key != b->key ? (a->key > b->key) - (a->key < b->key)
+                            : (a->item > b->item) - (a->item < b->item);
+}
+
 /* Radix-sorts by 16 bits of the key at a time; the order of equal keys is kept. Returns false
  * when memory is out. */
-static bool sort_keys(keyed **keys, size_t count)
+static bool radix_sort_keys(keyed **keys, size_t count)
 {
     enum { DIGITS = 1 << 16 };
     keyed *other = cwi_alloc_array(count, sizeof *other);
@@ -132,6 +140,17 @@ static bool sort_keys(keyed **keys, size_t count)
     cwi_free(other);
     cwi_free(starts);
     return ok;
+}
+
+/* Few keys are compared with each other, as the digits of a radix sort would outnumber them. The
+ * order is the same. Returns false when memory is out. */
+static bool sort_keys(keyed **keys, size_t count)
+{
+    enum { FEW = 1 << 12 };
+    if (count > FEW)
+        return radix_sort_keys(keys, count);
+    qsort(*keys, count, sizeof **keys, compare_keyed);
+    return true;
 }
 
 void cwi_boxes_around(const cwi_boxes_node *n, float box[6])

@@ -152,7 +152,8 @@ static bool whole_orient2d(const float *const p[3], int x, int y, int *sign)
 #endif
 
 /* Decides by doubles if possible. The bound is Shewchuk's, for inputs of any size; those here
- * cannot under- or overflow. */
+ * cannot under- or overflow. Where all products vanish, as of points in a plane across an axis,
+ * the determinant does so exactly. */
 int cwi_orient3d(const float a[3], const float b[3], const float c[3], const float d[3])
 {
     const double unit = DBL_EPSILON / 2, error_factor = (7 + 56 * unit) * unit;
@@ -168,7 +169,7 @@ int cwi_orient3d(const float a[3], const float b[3], const float c[3], const flo
         value += u[i] * (vw - wv);
         size += fabs(u[i]) * (fabs(vw) + fabs(wv));
     }
-    if (fabs(value) > error_factor * size)
+    if (fabs(value) > error_factor * size || size == 0)
         return sign_of(value);
     int sign;
     return whole_orient3d((const float *[4]){a, b, c, d}, &sign) ? sign
@@ -194,7 +195,7 @@ int cwi_orient2d(const float a[3], const float b[3], const float c[3], int axis)
     const double left = ((double)a[x] - (double)c[x]) * ((double)b[y] - (double)c[y]);
     const double right = ((double)a[y] - (double)c[y]) * ((double)b[x] - (double)c[x]);
     const double value = left - right;
-    if (fabs(value) > error_factor * (fabs(left) + fabs(right)))
+    if (fabs(value) > error_factor * (fabs(left) + fabs(right)) || (left == 0 && right == 0))
         return sign_of(value);
     int sign;
     return whole_orient2d((const float *[3]){a, b, c}, x, y, &sign)

@@ -7,6 +7,7 @@
 #include "core/geometry/closest_point.h"
 #include "core/mesh/mesh_attributes.h"
 #include "core/mesh/mesh_triangle.h"
+#include "core/mesh/triangle_boxes.h"
 
 enum { CHUNK = 1024 };
 
@@ -88,7 +89,8 @@ cw_status cwi_carry(const cw_mesh *from, const cwi_sources *sources, int threads
     cw_status st = cwi_attributes_alloc(from, to, err);
     if (st != CW_OK || !cwi_attributes_any(from, ~0u))
         return st;
-    st = cwi_closest_build(from, &c.tree, err);
+    st = cwi_triangle_boxes_build(&c.tree, from->positions, from->vertex_count, from->triangles,
+                                  from->triangle_count, err);
     if (st == CW_OK && cwi_attributes_any(from, 1u << CW_ON_VERTICES))
         st = cwi_parallel_for((to->vertex_count + CHUNK - 1) / CHUNK, CHUNK * 64, threads,
                               progress, "carrying", carry_vertices, &c, err);

@@ -12,7 +12,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { NONE = UINT32_MAX, MAX_TRIES = 64 };
+#define NONE UINT32_MAX
+
+enum { MAX_TRIES = 64 };
 
 /* A solid, and the volume by which solids are ordered. */
 typedef struct ranked_solid {

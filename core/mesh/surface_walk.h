@@ -18,11 +18,20 @@ typedef struct cwi_fans {
     const uint32_t *around;
 } cwi_fans;
 
+/* Triangles around a vertex above which the fan is wide: walks neither search it nor begin at any
+ * triangle of it, as they would take steps in proportion to its size. */
+enum { CWI_WIDE_FAN = 512 };
+
 typedef struct cwi_surface_walk {
     const cwi_fans *fans;
     double enough; /* the square of a distance: corners are not crossed for less */
     uint32_t at;   /* the triangle where the walk stands */
 } cwi_surface_walk;
+
+static inline bool cwi_fan_is_wide(const cwi_fans *f, uint32_t vertex)
+{
+    return f->first[vertex + 1] - f->first[vertex] > CWI_WIDE_FAN;
+}
 
 /* Sets the corners of the triangle where a walk stands. */
 static inline void cwi_walk_facet(const cwi_surface_walk *w, uint32_t triangle,
@@ -64,11 +73,23 @@ static inline bool cwi_walk_take(cwi_surface_walk *w, uint32_t triangle, const d
     return true;
 }
 
+/* Swaps the ends of an edge if fewer triangles are around the second. The edge's triangles are around
+ * both, in the same order. */
+static inline void cwi_fans_choose_end(const cwi_fans *f, uint32_t *from, uint32_t *to)
+{
+    const uint32_t end = *from;
+    if (f->first[*to + 1] - f->first[*to] < f->first[end + 1] - f->first[end]) {
+        *from = *to;
+        *to = end;
+    }
+}
+
 /* Crosses a side if that leads nearer. */
 static inline bool cwi_walk_cross(cwi_surface_walk *w, uint32_t from, uint32_t to,
                                   const double p[3], cwi_facet_view *view, double *nearest_sq)
 {
     const cwi_fans *f = w->fans;
+    cwi_fans_choose_end(f, &from, &to);
     for (uint32_t n = f->first[from]; n < f->first[from + 1]; n++) {
         const uint32_t t = f->around[n], *c = f->corners + 3 * (size_t)t;
         if (t != w->at && (c[0] == to || c[1] == to || c[2] == to) &&
@@ -88,15 +109,18 @@ static inline bool cwi_walk_step(cwi_surface_walk *w, const double p[3], cwi_fac
            (view->in_b < 0 && cwi_walk_cross(w, c[2], c[0], p, view, nearest_sq));
 }
 
-/* Goes to the nearest triangle at a corner. */
+/* Goes to the nearest triangle at a corner whose fan is not wide. */
 static inline bool cwi_walk_jump(cwi_surface_walk *w, const double p[3], cwi_facet_view *view,
                                  double *nearest_sq)
 {
     const cwi_fans *f = w->fans;
     const uint32_t start = w->at, *c = f->corners + 3 * (size_t)start;
-    for (int k = 0; k < 3; k++)
+    for (int k = 0; k < 3; k++) {
+        if (cwi_fan_is_wide(f, c[k]))
+            continue;
         for (uint32_t n = f->first[c[k]]; n < f->first[c[k] + 1]; n++)
             cwi_walk_take(w, f->around[n], p, view, nearest_sq);
+    }
     return w->at != start;
 }
 

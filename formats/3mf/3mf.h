@@ -36,6 +36,11 @@ typedef struct cwi_3mf_resource {
     size_t first, end; /* among the colours */
 } cwi_3mf_resource;
 
+/* Triangles of an object that slicers say are no part of the print, counted in the object. */
+typedef struct cwi_3mf_modifier {
+    uint32_t object, first, last;
+} cwi_3mf_modifier;
+
 /* Maximums, small enough that even ids made to collide are found quickly. */
 enum { CWI_3MF_MODELS = 1024, CWI_3MF_RESOURCES = 1 << 16 };
 
@@ -69,6 +74,8 @@ typedef struct cwi_3mf {
     size_t name_bytes, name_capacity;
     cwi_3mf_resource *resources; /* a hash table */
     size_t resource_count, slots;
+    cwi_3mf_modifier *modifiers;
+    size_t modifier_count, modifier_capacity;
     uint64_t text_left; /* bytes of XML that may still be read */
 } cwi_3mf;
 
@@ -78,6 +85,13 @@ extern const uint32_t cwi_3mf_none;
  * Returns CW_ERR_FORMAT, CW_ERR_UNSAFE (a document type), CW_ERR_UNSUPPORTED (it needs an
  * extension that is not read), CW_ERR_LIMIT, CW_ERR_NO_MEMORY */
 CW_NODISCARD cw_status cwi_3mf_read_model(cwi_3mf *m, size_t model, cw_error *err);
+
+/* Reads which volumes of objects are no parts of the print, if a slicer has said so. Returns the same
+ * errors. */
+CW_NODISCARD cw_status cwi_3mf_read_slicer(cwi_3mf *m, cw_error *err);
+
+/* Returns true if a triangle of an object, counted in it, is no part of the print. */
+bool cwi_3mf_is_modifier(const cwi_3mf *m, uint32_t object, size_t triangle);
 
 /* Copies the objects, placed as the build states, into the mesh. Returns the same errors. */
 CW_NODISCARD cw_status cwi_3mf_place(cwi_3mf *m, cw_error *err);

@@ -295,7 +295,7 @@ static cw_status build_mesh(placing *p, cw_error *err)
         st = move_instances(p, err);
     if (st == CW_OK)
         st = color_points(m, m->build.point_count, err);
-    return st == CW_OK ? cwi_build_finish(&m->build, m->mesh, err) : st;
+    return st == CW_OK ? cwi_build_finish(&m->build, m->mesh, m->metadata, err) : st;
 }
 
 cw_status cwi_3mf_place(cwi_3mf *m, cw_error *err)

@@ -22,6 +22,7 @@ typedef struct parsing {
     cwi_xml *xml;
     cwi_3mf_object object; /* the current object */
     uint32_t object_id;
+    size_t object_triangles;  /* of it so far, those left out among them */
     uint32_t group_id, color; /* of triangles without colours of their own */
     cwi_3mf_resource *group;  /* the group of colours being read */
     cwi_3mf_resource *used;   /* the group that triangles named last, and its id */
@@ -272,6 +273,7 @@ static cw_status start_object(void *user, cwi_xml *x, cwi_attributes a, cw_error
     p->object = (cwi_3mf_object){.first_point = m->build.point_count,
                                  .first_triangle = m->build.triangle_count,
                                  .first_component = m->component_count};
+    p->object_triangles = 0;
     p->group_id = p->color = cwi_3mf_none;
     cw_status st = read_type(p, type, &p->object.type, err);
     if (st == CW_OK)
@@ -380,6 +382,10 @@ static cw_status start_triangle(void *user, cwi_xml *x, cwi_attributes a, cw_err
     size_t corners[3];
     cw_status st = CW_OK;
     (void)x;
+    if (cwi_3mf_is_modifier(p->m, p->object_id, p->object_triangles++)) {
+        p->m->metadata->modifier_triangles++;
+        return CW_OK;
+    }
     pick_attributes(a, names, values, 7);
     for (int c = 0; c < 3 && st == CW_OK; c++) {
         uint32_t vertex = 0;

@@ -1,7 +1,8 @@
 /* Reads 3MF packages. The relationships name the model, and its own relationships name the
- * models of its parts. Nothing else in the archive is read. */
+ * models of its parts. Of the rest, only what slicers say of modifiers is read. */
 #include "core/base/memory.h"
 #include "core/base/status.h"
+#include "core/mesh/mesh.h"
 #include "formats/3mf/3mf.h"
 #include "formats/3mf/3mf_format.h"
 
@@ -77,6 +78,8 @@ static cw_status read_models(cwi_3mf *m, cw_error *err)
     if (st == CW_OK)
         st = add_related(m, m->models[0], err);
     if (st == CW_OK)
+        st = cwi_3mf_read_slicer(m, err);
+    if (st == CW_OK)
         st = cwi_3mf_read_model(m, 0, err);
     for (size_t i = 1; i < m->model_count && st == CW_OK; i++)
         if (m->is_wanted[i])
@@ -96,8 +99,18 @@ static void free_package(cwi_3mf *m)
     cwi_free(m->items);
     cwi_free(m->names);
     cwi_free(m->resources);
+    cwi_free(m->modifiers);
     cwi_unzip_close(&m->zip);
     cwi_free(m);
+}
+
+/* Leaves out the points of triangles that were left out. */
+static cw_status drop_unnamed(cw_mesh *mesh, cw_error *err)
+{
+    bool *none = cwi_alloc_zeroed(mesh->triangle_count, sizeof *none);
+    cw_status st = none ? cwi_mesh_drop_marked(mesh, none, err) : cwi_fail_memory(err);
+    cwi_free(none);
+    return st;
 }
 
 cw_status cwi_3mf_read(cwi_mesh_input *in, cw_mesh *mesh, cw_mesh_file *metadata, cw_error *err)
@@ -115,6 +128,8 @@ cw_status cwi_3mf_read(cwi_mesh_input *in, cw_mesh *mesh, cw_mesh_file *metadata
         st = read_models(m, err);
     if (st == CW_OK)
         st = cwi_3mf_place(m, err);
+    if (st == CW_OK && metadata->modifier_triangles)
+        st = drop_unnamed(mesh, err);
     free_package(m);
     return st;
 }

@@ -129,7 +129,8 @@ static void convert_colors(const cwi_gltf_numbers *numbers, uint8_t *to)
 
 /* Adds colours. A primitive without colours among others that have some is white, as it is
  * drawn. */
-static cw_status add_colors(cwi_gltf_reader *r, int accessor, size_t first, cw_error *err)
+static cw_status add_colors(cwi_gltf_reader *r, int accessor, size_t first,
+                            cw_mesh_file *metadata, cw_error *err)
 {
     const size_t count = r->build.point_count;
     cwi_gltf_numbers numbers = {0};
@@ -139,6 +140,13 @@ static cw_status add_colors(cwi_gltf_reader *r, int accessor, size_t first, cw_e
     const size_t from = r->colors ? first : 0;
     if (accessor >= 0)
         st = open_attribute(r, accessor, "COLOR_0", count - first, 3, 4, &numbers, err);
+    if (st == CW_OK && numbers.count && numbers.component != FLOAT && !numbers.normalized) {
+        numbers.normalized = true; /* as it was meant: 1 of 65535 is no colour */
+        if (!*metadata->fault)
+            snprintf(metadata->fault, sizeof metadata->fault,
+                     "accessors[%d].normalized is not true, as COLOR_0 of whole numbers needs",
+                     accessor);
+    }
     if (st == CW_OK)
         st = cwi_mesh_grow(r->in, &r->colors, &r->color_capacity, count, 4, err);
     if (st == CW_OK) {
@@ -196,7 +204,7 @@ static cw_status add_vertices(cwi_gltf_reader *r, const cwi_gltf_instance *at,
     cwi_free(numbers.bytes);
     if (st == CW_OK)
         st = add_normals(r, at, p->normal, first, err);
-    return st == CW_OK ? add_colors(r, p->color, first, err) : st;
+    return st == CW_OK ? add_colors(r, p->color, first, metadata, err) : st;
 }
 
 /* --- triangles --------------------------------------------------------------------------- */

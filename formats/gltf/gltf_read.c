@@ -106,6 +106,20 @@ static cw_status check_views(const cwi_gltf_scene *scene, cw_error *err)
     return st;
 }
 
+/* Names what viewers draw otherwise, for the user. */
+static void name_drawn(unsigned drawn, cw_mesh_file *metadata)
+{
+    static const char *const names[] = {"weights of morph targets", "skins",
+                                        "instances (EXT_mesh_gpu_instancing)",
+                                        "nodes hidden by KHR_node_visibility"};
+    size_t used = 0;
+    for (size_t n = 0; n < 4 && used < sizeof metadata->not_applied; n++)
+        if (drawn >> n & 1)
+            used += (size_t)snprintf(metadata->not_applied + used,
+                                     sizeof metadata->not_applied - used, "%s%s",
+                                     used ? ", " : "", names[n]);
+}
+
 static cw_status parse_json(cwi_gltf_reader *r, uint64_t at, uint64_t size,
                             cw_mesh_file *metadata, cw_error *err)
 {
@@ -121,6 +135,8 @@ static cw_status parse_json(cwi_gltf_reader *r, uint64_t at, uint64_t size,
         st = cwi_gltf_check(json, got, err);
     if (st == CW_OK && cwi_gltf_check_look(json, got, &fault) != CW_OK)
         snprintf(metadata->fault, sizeof metadata->fault, "%.159s", fault.message);
+    if (st == CW_OK)
+        name_drawn(cwi_gltf_find_drawn(json, got), metadata);
     if (st == CW_OK)
         st = cwi_gltf_blind(json, got, err);
     if (st == CW_OK)
@@ -268,7 +284,7 @@ static cw_status build_scene(cwi_gltf_reader *r, cw_mesh *mesh, cw_mesh_file *me
         mesh->normals = r->normals;
         r->normals = NULL;
     }
-    return cwi_build_finish(&r->build, mesh, err);
+    return cwi_build_finish(&r->build, mesh, metadata, err);
 }
 
 static cw_status read_scene(cwi_mesh_input *in, bool binary, cw_mesh *mesh,

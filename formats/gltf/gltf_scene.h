@@ -98,6 +98,17 @@ CW_NODISCARD cw_status cwi_gltf_check(const char *json, size_t size, cw_error *e
  * Returns CW_ERR_FORMAT as cwi_gltf_check() does. */
 CW_NODISCARD cw_status cwi_gltf_check_look(const char *json, size_t size, cw_error *err);
 
+/* Features of a scene that viewers apply, and this reader does not. */
+enum {
+    CWI_GLTF_DRAWN_MORPHED = 1,   /* weights of morph targets */
+    CWI_GLTF_DRAWN_SKINNED = 2,   /* skins, at rest */
+    CWI_GLTF_DRAWN_INSTANCES = 4, /* EXT_mesh_gpu_instancing */
+    CWI_GLTF_DRAWN_HIDDEN = 8     /* nodes that KHR_node_visibility hides */
+};
+
+/* Finds these in JSON that cwi_gltf_check() has accepted. */
+unsigned cwi_gltf_find_drawn(const char *json, size_t size);
+
 #define CWI_GLTF_HIDDEN_LOD "MSFT_LOD"
 
 /* Sanitizes JSON for a library that trusts it. Refuses nesting deeper than 64 and more than 32

@@ -23,8 +23,12 @@ typedef enum value_kind {
     BOOLEAN,
     STRING,
     STRINGS,
-    WORD,       /* a string out of `choices` */
-    NUMBER_CODE /* a number out of `choices` */
+    WORD,        /* a string out of `choices` */
+    NUMBER_CODE, /* a number out of `choices` */
+    /* Anything, of which a mark is kept: */
+    PRESENT,
+    NOT_ZERO, /* a list with another number than 0 */
+    IS_FALSE
 } value_kind;
 
 typedef enum list_name {
@@ -51,6 +55,7 @@ typedef struct rule {
     double largest;             /* of NUMBERS */
     const char *choices;        /* words separated by blanks */
     const struct rule *members; /* of an object */
+    unsigned mark;              /* of what is kept: a CWI_GLTF_DRAWN bit */
 } rule;
 
 /* The maximum of small numbers. tinygltf keeps whole numbers of extensions and of "sparse" in
@@ -170,6 +175,24 @@ static const rule material[] = {
     {0}};
 static const rule looks[] = {{.key = "materials", .kind = OBJECTS, .members = material}, {0}};
 
+/* How viewers draw a scene otherwise than by the positions and nodes that are read. */
+static const rule visibility[] = {
+    {.key = "visible", .kind = IS_FALSE, .mark = CWI_GLTF_DRAWN_HIDDEN}, {0}};
+static const rule drawn_extensions[] = {
+    {.key = "EXT_mesh_gpu_instancing", .kind = PRESENT, .mark = CWI_GLTF_DRAWN_INSTANCES},
+    {.key = "KHR_node_visibility", .kind = OBJECT, .members = visibility},
+    {0}};
+static const rule drawn_node[] = {
+    {.key = "weights", .kind = NOT_ZERO, .mark = CWI_GLTF_DRAWN_MORPHED},
+    {.key = "skin", .kind = PRESENT, .mark = CWI_GLTF_DRAWN_SKINNED},
+    {.key = "extensions", .kind = OBJECT, .members = drawn_extensions},
+    {0}};
+static const rule drawn_mesh[] = {
+    {.key = "weights", .kind = NOT_ZERO, .mark = CWI_GLTF_DRAWN_MORPHED}, {0}};
+static const rule drawn[] = {{.key = "nodes", .kind = OBJECTS, .members = drawn_node},
+                             {.key = "meshes", .kind = OBJECTS, .members = drawn_mesh},
+                             {0}};
+
 /* --- walking through JSON ---------------------------------------------------------------- */
 
 /* A walk through the JSON. It checks only the grammar that it needs; tinygltf refuses the
@@ -178,6 +201,7 @@ typedef struct walker {
     const char *json;
     size_t size, at;
     size_t counts[LIST_COUNT];
+    unsigned marks;
     cw_error *err;
 } walker;
 
@@ -537,6 +561,26 @@ static cw_status check_object(walker *w, const rule *rules, const json_path *p)
     return st == CW_OK ? check_required(w, rules, seen, p) : st;
 }
 
+/* Keeps the mark of a value that is there, false, or a list with another number than 0. */
+static cw_status keep_mark(walker *w, const rule *r)
+{
+    next_char(w);
+    const size_t start = w->at;
+    if (!skip_value(w))
+        return fail_broken(w);
+    bool is_kept = r->kind == PRESENT;
+    if (r->kind == IS_FALSE)
+        is_kept = w->at - start == 5 && memcmp(w->json + start, "false", 5) == 0;
+    for (size_t i = start; i < w->at && r->kind == NOT_ZERO && !is_kept; i++) {
+        const char c = w->json[i];
+        is_kept = c >= '1' && c <= '9';
+        while ((c == 'e' || c == 'E') && i + 1 < w->at && !strchr(",]", w->json[i + 1]))
+            i++; /* an exponent says nothing of 0 */
+    }
+    w->marks |= is_kept ? r->mark : 0;
+    return CW_OK;
+}
+
 static cw_status check_value(walker *w, const rule *r, const json_path *p)
 {
     next_char(w);
@@ -565,6 +609,10 @@ static cw_status check_value(walker *w, const rule *r, const json_path *p)
     case BOOLEAN:
     case STRING:
         return check_plain(w, r, p);
+    case PRESENT:
+    case NOT_ZERO:
+    case IS_FALSE:
+        return keep_mark(w, r);
     case ANYTHING:
     default:
         return skip_value(w) ? CW_OK : fail_broken(w);
@@ -622,4 +670,10 @@ cw_status cwi_gltf_check_look(const char *json, size_t size, cw_error *err)
 {
     walker w = {.json = json, .size = size, .err = err};
     return check_object(&w, looks, NULL);
+}
+
+unsigned cwi_gltf_find_drawn(const char *json, size_t size)
+{
+    walker w = {.json = json, .size = size};
+    return check_object(&w, drawn, NULL) == CW_OK ? w.marks : 0;
 }

@@ -372,7 +372,8 @@ bool fits_normal(const tinygltf::Accessor &a, bool quantized)
 
 bool fits_color(const tinygltf::Accessor &a, bool)
 {
-    const bool is_fraction = is_small(a) && is_unsigned(a) && a.normalized;
+    const bool is_fraction =
+        is_small(a) && is_unsigned(a); // if not normalized, it was forgotten
     return (a.type == TINYGLTF_TYPE_VEC3 || a.type == TINYGLTF_TYPE_VEC4) &&
            (is_float(a) || is_fraction);
 }

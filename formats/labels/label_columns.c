@@ -33,21 +33,19 @@ typedef struct column_rules {
     const char *names[COLUMN_COUNT]; /* NULL: the format has no such column */
 } column_rules;
 
-static const column_rules csv_rules = {',',
-                                       true,
-                                       "",
-                                       {[COLUMN_VALUE] = "LabelValue",
-                                        [COLUMN_NAME] = "Name",
-                                        [COLUMN_RED] = "Color_R",
-                                        [COLUMN_GREEN] = "Color_G",
-                                        [COLUMN_BLUE] = "Color_B",
-                                        [COLUMN_ALPHA] = "Color_A",
-                                        [COLUMN_CATEGORY_SCHEME] = "Category_CodingScheme",
-                                        [COLUMN_CATEGORY_VALUE] = "Category_CodeValue",
-                                        [COLUMN_CATEGORY_MEANING] = "Category_CodeMeaning",
-                                        [COLUMN_TYPE_SCHEME] = "Type_CodingScheme",
-                                        [COLUMN_TYPE_VALUE] = "Type_CodeValue",
-                                        [COLUMN_TYPE_MEANING] = "Type_CodeMeaning"}};
+/* The columns of 3D Slicer. Spreadsheets part them by semicolons where the comma is for decimals. */
+#define CSV_NAMES                                                                              \
+    {                                                                                          \
+        [COLUMN_VALUE] = "LabelValue", [COLUMN_NAME] = "Name", [COLUMN_RED] = "Color_R",       \
+        [COLUMN_GREEN] = "Color_G", [COLUMN_BLUE] = "Color_B", [COLUMN_ALPHA] = "Color_A",     \
+        [COLUMN_CATEGORY_SCHEME] = "Category_CodingScheme",                                    \
+        [COLUMN_CATEGORY_VALUE] = "Category_CodeValue",                                        \
+        [COLUMN_CATEGORY_MEANING] = "Category_CodeMeaning",                                    \
+        [COLUMN_TYPE_SCHEME] = "Type_CodingScheme", [COLUMN_TYPE_VALUE] = "Type_CodeValue",    \
+        [COLUMN_TYPE_MEANING] = "Type_CodeMeaning"                                             \
+    }
+static const column_rules csv_rules = {',', true, "", CSV_NAMES};
+static const column_rules semicolon_rules = {';', true, "", CSV_NAMES};
 
 static const column_rules bids_rules = {
     '\t',
@@ -256,12 +254,13 @@ static bool has_columns(const cwi_label_file *file, const column_rules *rules)
 
 static bool is_csv(const cwi_label_file *file)
 {
-    return has_columns(file, &csv_rules);
+    return has_columns(file, &csv_rules) || has_columns(file, &semicolon_rules);
 }
 
 static cw_status read_csv(cwi_label_file *file, cw_label_table *table, cw_error *err)
 {
-    return read_rows(file, &csv_rules, table, err);
+    const bool is_plain = has_columns(file, &csv_rules);
+    return read_rows(file, is_plain ? &csv_rules : &semicolon_rules, table, err);
 }
 
 static bool is_bids(const cwi_label_file *file)

@@ -33,9 +33,9 @@ const cwi_label_format cwi_label_xml = {"workbench", NULL, is_label_xml, read_la
 
 /* Formats in the order in which content is tested. */
 static const cwi_label_format *const formats[] = {
-    &cwi_label_xml,    &cwi_label_niivue,     &cwi_label_ome_zarr,
-    &cwi_label_csv,    &cwi_label_bids,       &cwi_label_itksnap,
-    &cwi_label_slicer, &cwi_label_freesurfer, &cwi_label_text,
+    &cwi_label_xml,        &cwi_label_niivue, &cwi_label_ome_zarr, &cwi_label_nnunet,
+    &cwi_label_csv,        &cwi_label_bids,   &cwi_label_itksnap,  &cwi_label_slicer,
+    &cwi_label_freesurfer, &cwi_label_text,
 };
 enum { FORMAT_COUNT = sizeof formats / sizeof *formats };
 

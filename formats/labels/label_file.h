@@ -28,9 +28,9 @@ typedef struct cwi_label_format {
     cw_status (*read)(cwi_label_file *file, cw_label_table *table, cw_error *err);
 } cwi_label_format;
 
-extern const cwi_label_format cwi_label_xml, cwi_label_niivue, cwi_label_ome_zarr,
-    cwi_label_csv, cwi_label_bids, cwi_label_itksnap, cwi_label_slicer, cwi_label_freesurfer,
-    cwi_label_text;
+extern const cwi_label_format cwi_label_xml, cwi_label_niivue, cwi_label_nnunet,
+    cwi_label_ome_zarr, cwi_label_csv, cwi_label_bids, cwi_label_itksnap, cwi_label_slicer,
+    cwi_label_freesurfer, cwi_label_text;
 
 /* Reads an open file into memory, and parses JSON. Close the file in any case.
  * Returns CW_ERR_LIMIT for more than 64 MiB, or 16 MiB of JSON; CW_ERR_FORMAT for zero bytes,

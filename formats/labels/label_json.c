@@ -1,5 +1,5 @@
-/* Reads tables of labels in JSON: those of niivue and MRIcroGL, and the image-label of
- * OME-Zarr. */
+/* Reads tables of labels in JSON: those of niivue and MRIcroGL, the image-label of OME-Zarr, and the labels
+ * of nnU-Net's dataset.json. */
 #include "core/base/status.h"
 #include "core/volume/label_table.h"
 #include "formats/labels/label_file.h"
@@ -96,5 +96,51 @@ static cw_status read_ome_zarr(cwi_label_file *file, cw_label_table *table, cw_e
     return cwi_label_ome_read(find_image_label(file->json), table, err);
 }
 
+/* --- nnU-Net: numbers of names, or names of numbers ---------------------------------------- */
+
+static bool is_nnunet(const cwi_label_file *file)
+{
+    const json_t *labels = json_object_get(file->json, "labels");
+    return json_is_object(labels) && json_object_size(labels) > 0;
+}
+
+/* Reads a member: "liver": 3, or "3": "liver" of version 1. A list of numbers is a region of labels that
+ * have names of their own: left out. */
+static cw_status read_member(const char *key, const json_t *member, cw_label *label,
+                             cw_error *err)
+{
+    char field[80];
+    snprintf(field, sizeof field, "labels.%.60s", key);
+    *label = (cw_label){.name = (char *)(uintptr_t)key};
+    if (!json_is_string(member))
+        return cwi_json_read_whole(member, field, UINT32_MAX, &label->value, err);
+    label->name = cwi_json_text(member);
+    return cwi_label_is_whole(key) && strlen(key) < 11
+               ? cwi_label_whole(key, UINT32_MAX, 1, field, &label->value, err)
+               : cwi_fail(err, CW_ERR_FORMAT,
+                          "'%s': a number was expected, of the label that is named '%.40s'",
+                          field, json_string_value(member));
+}
+
+static cw_status read_nnunet(cwi_label_file *file, cw_label_table *table, cw_error *err)
+{
+    json_t *labels = json_object_get(file->json, "labels"), *member;
+    const char *key;
+    cw_status st = CW_OK;
+    json_object_foreach(labels, key, member)
+    {
+        cw_label label;
+        if (json_is_array(member))
+            continue;
+        st = read_member(key, member, &label, err);
+        if (st == CW_OK)
+            st = cwi_label_table_append(table, &label, err);
+        if (st != CW_OK)
+            return st;
+    }
+    return cwi_label_table_sort(table, false, err);
+}
+
+const cwi_label_format cwi_label_nnunet = {"nnunet", NULL, is_nnunet, read_nnunet};
 const cwi_label_format cwi_label_niivue = {"niivue", NULL, is_niivue, read_niivue};
 const cwi_label_format cwi_label_ome_zarr = {"ome-zarr", NULL, is_ome_zarr, read_ome_zarr};

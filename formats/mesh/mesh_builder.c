@@ -157,11 +157,20 @@ cw_status cwi_build_corner(cwi_mesh_build *b, int64_t point, cw_error *err)
     return st;
 }
 
-void cwi_build_end_face(cwi_mesh_build *b, cw_mesh_file *metadata)
+cw_status cwi_build_end_face(cwi_mesh_build *b, cw_mesh_file *metadata, cw_error *err)
 {
+    const size_t triangles = b->corners > 3 ? b->corners - 2 : 0;
+    cw_status st = CW_OK;
     metadata->skipped += b->corners < 3;
     metadata->polygons += b->corners > 3;
     b->corners = 0;
+    if (triangles)
+        st = cwi_mesh_grow(b->in, &b->polygons, &b->polygon_capacity, b->polygon_count + 1,
+                           sizeof *b->polygons, err);
+    if (triangles && st == CW_OK)
+        b->polygons[b->polygon_count++] =
+            (cwi_face_polygon){(uint32_t)(b->triangle_count - triangles), (uint32_t)triangles};
+    return st;
 }
 
 /* --- the mesh ---------------------------------------------------------------------------- */
@@ -267,7 +276,8 @@ static cw_status move_arrays(cwi_mesh_build *b, cw_mesh *mesh, cw_error *err)
     return cwi_mesh_shrink(mesh, err);
 }
 
-cw_status cwi_build_finish(cwi_mesh_build *b, cw_mesh *mesh, cw_error *err)
+cw_status cwi_build_finish(cwi_mesh_build *b, cw_mesh *mesh, cw_mesh_file *metadata,
+                           cw_error *err)
 {
     double origin[3];
     cw_status st = check_points(b, err);
@@ -279,13 +289,18 @@ cw_status cwi_build_finish(cwi_mesh_build *b, cw_mesh *mesh, cw_error *err)
     for (int a = 0; a < 3; a++)
         mesh->origin[a] += origin[a];
     st = round_points(b, origin, err);
-    return st == CW_OK ? move_arrays(b, mesh, err) : st;
+    if (st == CW_OK)
+        st = move_arrays(b, mesh, err);
+    return st == CW_OK
+               ? cwi_cut_polygons(b->polygons, b->polygon_count, mesh, &metadata->crossing, err)
+               : st;
 }
 
 void cwi_build_free(cwi_mesh_build *b)
 {
     cwi_free(b->points);
     cwi_free(b->triangles);
+    cwi_free(b->polygons);
     *b = (cwi_mesh_build){0};
 }
 

@@ -4,6 +4,7 @@
 #define FORMATS_MESH_MESH_READER_H
 
 #include "formats/bytes/input_file.h"
+#include "formats/mesh/face_polygons.h"
 #include "formats/text/text_scanner.h"
 
 #ifdef __cplusplus
@@ -69,9 +70,11 @@ typedef struct cwi_mesh_build {
     uint32_t *triangles; /* triangle_count x 3 */
     size_t point_count, point_capacity;
     size_t triangle_count, triangle_capacity;
-    uint32_t first, last; /* corners of the current face */
-    size_t corners;       /* ... and their number so far */
-    int base;             /* the number of the first vertex in the file, for messages */
+    uint32_t first, last;       /* corners of the current face */
+    size_t corners;             /* ... and their number so far */
+    cwi_face_polygon *polygons; /* polygon_count of them */
+    size_t polygon_count, polygon_capacity;
+    int base; /* the number of the first vertex in the file, for messages */
 } cwi_mesh_build;
 
 /* Reserves room for that many points and triangles at once. */
@@ -83,12 +86,14 @@ CW_NODISCARD cw_status cwi_build_point(cwi_mesh_build *b, const double point[3],
  * From the third on, each corner makes a triangle with the first and the previous one. */
 CW_NODISCARD cw_status cwi_build_corner(cwi_mesh_build *b, int64_t point, cw_error *err);
 
-/* Ends the face, and counts it if it is a polygon or is skipped. */
-void cwi_build_end_face(cwi_mesh_build *b, cw_mesh_file *metadata);
+/* Ends the face, and counts it if it is a polygon or is skipped. Returns as cwi_mesh_grow() */
+CW_NODISCARD cw_status cwi_build_end_face(cwi_mesh_build *b, cw_mesh_file *metadata,
+                                          cw_error *err);
 
-/* Moves points and triangles into the mesh, and adds the origin chosen for them to its own.
+/* Moves points and triangles into the mesh, cuts polygons for which a fan is wrong, and adds the origin chosen for them to its own.
  * Returns CW_ERR_FORMAT for a point that is not finite or an index that names no point. */
-CW_NODISCARD cw_status cwi_build_finish(cwi_mesh_build *b, cw_mesh *mesh, cw_error *err);
+CW_NODISCARD cw_status cwi_build_finish(cwi_mesh_build *b, cw_mesh *mesh,
+                                        cw_mesh_file *metadata, cw_error *err);
 void cwi_build_free(cwi_mesh_build *b);
 
 /* Reads a comment that our writers leave in text files: "cubewright VERSION, LPS, mm", and

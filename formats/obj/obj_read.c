@@ -139,7 +139,7 @@ static cw_status read_face(obj *o, cwi_scan *s, cw_mesh_file *metadata, cw_error
             st = cwi_scan_word(s, &word, err);
     }
     if (st == CW_OK)
-        cwi_build_end_face(&o->build, metadata);
+        st = cwi_build_end_face(&o->build, metadata, err);
     return st == CW_OK ? cwi_scan_end_line(s, err) : st;
 }
 
@@ -223,7 +223,7 @@ cw_status cwi_obj_read(cwi_mesh_input *in, cw_mesh *mesh, cw_mesh_file *metadata
     if (st == CW_OK)
         st = read_lines(&o, &s, mesh, metadata, err);
     if (st == CW_OK)
-        st = cwi_build_finish(&o.build, mesh, err);
+        st = cwi_build_finish(&o.build, mesh, metadata, err);
     if (st == CW_OK)
         st = keep_normals(&o, mesh, err);
     cwi_scan_close(&s);

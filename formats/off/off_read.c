@@ -188,7 +188,7 @@ static cw_status read_face(off *o, cwi_scan *s, cw_mesh_file *metadata, cw_error
             st = cwi_build_corner(&o->build, corner, err);
     }
     if (st == CW_OK)
-        cwi_build_end_face(&o->build, metadata);
+        st = cwi_build_end_face(&o->build, metadata, err);
     return st;
 }
 
@@ -240,7 +240,7 @@ cw_status cwi_off_read(cwi_mesh_input *in, cw_mesh *mesh, cw_mesh_file *metadata
     if (st == CW_OK)
         st = read_lines(&o, &s, mesh, metadata, err);
     if (st == CW_OK)
-        st = cwi_build_finish(&o.build, mesh, err);
+        st = cwi_build_finish(&o.build, mesh, metadata, err);
     cwi_scan_close(&s);
     cwi_build_free(&o.build);
     return st;

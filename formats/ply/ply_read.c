@@ -100,7 +100,7 @@ static cw_status read_list(ply *p, cwi_scan *s, const cwi_ply_element *e,
             st = cwi_build_corner(&p->build, corner, err);
     }
     if (st == CW_OK && is_face)
-        cwi_build_end_face(&p->build, metadata);
+        st = cwi_build_end_face(&p->build, metadata, err);
     return st;
 }
 
@@ -243,7 +243,7 @@ static cw_status read_body(ply *p, cw_mesh *mesh, cw_mesh_file *metadata, cw_err
     if (st == CW_OK)
         st = read_elements(p, &s, mesh, metadata, err);
     if (st == CW_OK)
-        st = cwi_build_finish(&p->build, mesh, err);
+        st = cwi_build_finish(&p->build, mesh, metadata, err);
     cwi_scan_close(&s);
     return st;
 }

@@ -25,7 +25,7 @@ static bool is_binary(const unsigned char *head, size_t size, uint64_t file_size
 
 static bool is_text(const unsigned char *head, size_t size)
 {
-    size_t i = 0;
+    size_t i = size >= 3 && memcmp(head, "\xef\xbb\xbf", 3) == 0 ? 3 : 0; /* byte order mark */
     while (i < size && (head[i] == ' ' || (head[i] >= '\t' && head[i] <= '\r')))
         i++;
     /* a binary file that is cut off has another size than it should; its count of facets has a zero */
@@ -108,7 +108,84 @@ static void take_words(const char *text, cw_mesh *mesh, cw_mesh_file *metadata)
 
 /* --- binary ------------------------------------------------------------------------------ */
 
-static cw_status read_binary_facets(facets *f, cwi_scan *s, size_t count, cw_error *err)
+/* The facets behind the header, and the bytes that follow each. */
+typedef struct layout {
+    size_t count;
+    uint64_t attribute_bytes; /* of all facets */
+    bool has_attributes;      /* facets are followed by as many bytes as they state */
+} layout;
+
+/* Walks over facets that are followed by as many bytes as they state. Returns true if they end with the
+ * file. */
+static bool has_attributes(const facets *f, layout *l, cw_error *err)
+{
+    cwi_scan s = {0};
+    uint64_t bytes = 0;
+    size_t n = 0;
+    cw_status st = cwi_scan_open(&s, &f->in->file, START, &(cw_progress){0}, err);
+    for (const unsigned char *b; n < l->count && st == CW_OK; n++) {
+        st = cwi_scan_take(&s, FACET, "a facet", &b, err);
+        const size_t more = st == CW_OK ? b[48] | (size_t)b[49] << 8 : 0;
+        if (st == CW_OK && more)
+            st = cwi_scan_take(&s, more, "its attributes", &b, err);
+        bytes += more;
+    }
+    l->has_attributes = st == CW_OK && bytes && cwi_scan_left(&s) == 0;
+    l->attribute_bytes = l->has_attributes ? bytes : 0;
+    cwi_scan_close(&s);
+    return l->has_attributes;
+}
+
+/* Returns true if the first facet behind those that the header counts looks like one. */
+static bool goes_on(const facets *f, size_t count)
+{
+    unsigned char b[FACET];
+    size_t got;
+    bool is_facet = cwi_input_read_at(f->in->file.fd, START + FACET * (uint64_t)count, b, FACET,
+                                      &got, NULL) == CW_OK &&
+                    got == FACET;
+    for (size_t i = 3; i < 12 && is_facet; i++) { /* the normal may be anything */
+        const uint32_t bits = cwi_get_u32(b + 4 * i);
+        float x;
+        memcpy(&x, &bits, sizeof x);
+        is_facet = isfinite(x) && (x == 0 || (fabsf(x) > 1e-30f && fabsf(x) < 1e30f));
+    }
+    return is_facet;
+}
+
+/* Finds the number of facets. The header's is right where it fits the file's size, with or without the
+ * bytes that facets may have behind them. Else the size decides, if it is that of whole facets. */
+static cw_status find_layout(const facets *f, uint64_t bytes, layout *l, cw_mesh_file *metadata,
+                             cw_error *err)
+{
+    const uint64_t held = bytes / FACET, count = l->count;
+    const bool is_whole = bytes % FACET == 0 && held > 0;
+    if (count == held && is_whole)
+        return CW_OK;
+    if (count && count < held + 1 && has_attributes(f, l, NULL)) {
+        metadata->attribute_bytes = l->attribute_bytes;
+        return CW_OK;
+    }
+    if (is_whole && (count > held ? !f->in->desc.truncated : goes_on(f, l->count))) {
+        metadata->miscounted = true;
+        metadata->expected_triangles = l->count;
+        l->count = (size_t)held;
+        return CW_OK;
+    }
+    if (count <= held)
+        return CW_OK;
+    if (!f->in->desc.truncated || !held)
+        return cwi_fail(err, CW_ERR_FORMAT,
+                        "the header counts %zu facets; the file has room for %llu%s", l->count,
+                        (unsigned long long)held, held ? "; desc->truncated takes those" : "");
+    metadata->truncated = true;
+    metadata->expected_triangles = l->count;
+    l->count = (size_t)held;
+    return CW_OK;
+}
+
+static cw_status read_binary_facets(facets *f, cwi_scan *s, size_t count, bool has_attributes,
+                                    cw_error *err)
 {
     float corners[9 * BATCH];
     cw_status st = CW_OK;
@@ -119,6 +196,9 @@ static cw_status read_binary_facets(facets *f, cwi_scan *s, size_t count, cw_err
             const uint32_t bits = cwi_get_u32(b + 12 + 4 * i);
             memcpy(&corners[9 * t + i], &bits, sizeof bits);
         }
+        const size_t more = st == CW_OK && has_attributes ? b[48] | (size_t)b[49] << 8 : 0;
+        if (more)
+            st = cwi_scan_take(s, more, "its attributes", &b, err);
     }
     return st == CW_OK ? add_facets(f, corners, count, err) : st;
 }
@@ -131,23 +211,15 @@ static cw_status read_binary(facets *f, cwi_scan *s, cw_mesh *mesh, cw_mesh_file
     if (st != CW_OK)
         return st;
     char text[HEADER + 1] = "";
-    size_t count = cwi_get_u32(head + HEADER);
-    const uint64_t held = cwi_scan_left(s) / FACET;
+    layout l = {.count = cwi_get_u32(head + HEADER)};
     memcpy(text, head, HEADER);
     take_words(text, mesh, metadata);
-    if (count > held && (!f->in->desc.truncated || !held))
-        return cwi_fail(err, CW_ERR_FORMAT,
-                        "the header counts %zu facets; the file has room for %llu%s", count,
-                        (unsigned long long)held, held ? "; desc->truncated takes those" : "");
-    if (count > held) {
-        metadata->truncated = true;
-        metadata->expected_triangles = count;
-        count = (size_t)held;
-    }
-    st = ensure_capacity(f, count, err);
-    while (st == CW_OK && f->count < count) {
-        const size_t left = count - f->count;
-        st = read_binary_facets(f, s, left < BATCH ? left : BATCH, err);
+    st = find_layout(f, cwi_scan_left(s), &l, metadata, err);
+    if (st == CW_OK)
+        st = ensure_capacity(f, l.count, err);
+    while (st == CW_OK && f->count < l.count) {
+        const size_t left = l.count - f->count;
+        st = read_binary_facets(f, s, left < BATCH ? left : BATCH, l.has_attributes, err);
     }
     return st;
 }
@@ -302,7 +374,8 @@ cw_status cwi_stl_read(cwi_mesh_input *in, cw_mesh *mesh, cw_mesh_file *metadata
     cw_status st = cwi_input_read_at(in->file.fd, 0, head, sizeof head, &size, err);
     const bool text = is_text(head, size) && !is_binary(head, size, in->file.size);
     if (st == CW_OK)
-        st = text ? cwi_scan_open_text(&s, &in->file, 0, &in->desc.progress, err)
+        st = text ? cwi_scan_open_text(&s, &in->file, *head == 0xef ? 3 : 0, &in->desc.progress,
+                                       err)
                   : cwi_scan_open(&s, &in->file, 0, &in->desc.progress, err);
     if (st == CW_OK)
         st = text ? read_text(&f, &s, mesh, metadata, err)

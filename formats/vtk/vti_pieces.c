@@ -178,7 +178,7 @@ static cw_status read_piece(joining *j, const cwi_vti *piece, const cwi_vti_choi
                             const cwi_input *in, cw_error *err)
 {
     cwi_source src = {0};
-    cw_box box, place;
+    cw_box box = {{0}, {0}}, place;
     cw_volume part = {0};
     bool of_cells;
     cw_status st = cwi_vti_describe(piece, choice, in, &src, err);

@@ -65,6 +65,9 @@ typedef struct cwi_vtk {
     char others[400]; /* names and types of arrays that are not read, for messages */
 } cwi_vtk;
 
+/* Reads the lines before the first section: magic, title, and whether it is binary. */
+CW_NODISCARD cw_status cwi_vtk_start(cwi_vtk *v, cw_error *err);
+
 /* Reads the next line into v->line, without its end and trailing blanks, or the next line that
  * is not empty. *more is false behind the last. */
 CW_NODISCARD cw_status cwi_vtk_line(cwi_vtk *v, bool *more, cw_error *err);

@@ -4,8 +4,9 @@
 const cwi_format_driver cwi_format_vtk = {
     .name = "vtk",
     .extensions = ".vtk",
-    .about = "legacy VTK image data or grid of any kind",
+    .about = "legacy VTK image data, grid of any kind, or surface",
     .volume = {.sniff = cwi_vtk_sniff, .parse = cwi_vtk_parse, .read_grid = cwi_vtk_read_grid},
+    .mesh = {.sniff = cwi_vtk_poly_sniff, .read = cwi_vtk_poly_read},
 };
 
 const cwi_format_driver cwi_format_vtu = {

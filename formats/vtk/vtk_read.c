@@ -111,6 +111,12 @@ static cw_status read_form(cwi_vtk *v, cw_error *err)
                     v->number, v->line);
 }
 
+cw_status cwi_vtk_start(cwi_vtk *v, cw_error *err)
+{
+    cw_status st = read_magic(v, err);
+    return st == CW_OK ? read_form(v, err) : st;
+}
+
 static bool is_keyword(const cwi_vtk *v, const char *names)
 {
     return cwi_field_find(&names, 1, v->line, strcspn(v->line, " \t")) == 0;
@@ -369,9 +375,7 @@ static cw_status set_piece(const cwi_vtk *v, const grid *g, cwi_grid_piece *piec
 
 static cw_status read_start(cwi_vtk *v, grid *g, cw_error *err)
 {
-    cw_status st = read_magic(v, err);
-    if (st == CW_OK)
-        st = read_form(v, err);
+    cw_status st = cwi_vtk_start(v, err);
     return st == CW_OK ? read_dataset(v, g, err) : st;
 }
 

@@ -314,8 +314,7 @@ static cw_status add_corners(vtp *v, const cwi_tuples *corners, size_t from, siz
     if (!strip) {
         for (size_t i = from; i < to && st == CW_OK; i++)
             st = cwi_build_corner(&v->build, cwi_tuples_whole(corners, i), err);
-        cwi_build_end_face(&v->build, v->metadata);
-        return st;
+        return st == CW_OK ? cwi_build_end_face(&v->build, v->metadata, err) : st;
     }
     for (size_t i = from; i + 2 < to && st == CW_OK; i++) {
         const size_t odd = (i - from) % 2;
@@ -380,7 +379,7 @@ static cw_status read_arrays(vtp *v, cw_error *err)
         st = read_faces(v, POLYGONS, "NumberOfPolys", v->polygons, err);
     if (st == CW_OK)
         st = read_faces(v, STRIPS, "NumberOfStrips", v->strips, err);
-    return st == CW_OK ? cwi_build_finish(&v->build, v->mesh, err) : st;
+    return st == CW_OK ? cwi_build_finish(&v->build, v->mesh, v->metadata, err) : st;
 }
 
 cw_status cwi_vtp_read(cwi_mesh_input *in, cw_mesh *mesh, cw_mesh_file *metadata, cw_error *err)

@@ -295,7 +295,7 @@ CW_NODISCARD CW_API cw_status cw_series_list(const char *path, const cw_read_des
 CW_API void cw_series_free(cw_series *series);
 
 /* Reads the names and colours of labels from a file: a colour table of FreeSurfer or 3D Slicer,
- * descriptions of ITK-SNAP, the CSV of 3D Slicer, the TSV of BIDS, JSON of niivue, XML with a
+ * descriptions of ITK-SNAP, the CSV of 3D Slicer, the TSV of BIDS, JSON of niivue and nnU-Net, XML with a
  * LabelTable as of Connectome Workbench, the image-label of OME-Zarr, or plain lines such as
  * "5 liver" or "5;LIV;liver". The content decides which; the extension counts only where the
  * content is of none. Where A of a number, a name and R G B A may be opacity or transparency,
@@ -361,7 +361,7 @@ typedef struct cw_mesh_file {
     bool local;         /* coordinates were relative to an origin that the file names */
     size_t parts;       /* number of merged parts: objects of OBJ, items of 3MF, primitives of
                            glTF; else 1 */
-    size_t polygons;    /* faces of more than three corners, cut into fans of triangles */
+    size_t polygons;    /* faces of more than three corners, cut into triangles */
     size_t skipped;     /* points, lines and faces of fewer than three corners: left out */
     size_t levels;      /* maximum number of coarser levels of detail of a mesh (MSFT_lod of
                            glTF): no part of the scene, left out */
@@ -373,6 +373,19 @@ typedef struct cw_mesh_file {
     size_t expected_triangles; /* of that STL by its header; 0: a text, which does not say */
     char fault[160]; /* of glTF: a value beyond its range, or bounds that are not those of the
                         positions, neither of which changes the mesh; "": none found */
+    size_t crossing; /* of the polygons: those that cross themselves, whose triangles overlap */
+
+    /* An STL whose header counts expected_triangles, and whose size tells another number, which was
+     * taken. */
+    bool miscounted;
+    uint64_t attribute_bytes; /* behind the facets of an STL, as they state: left out */
+
+    /* Of glTF: features that viewers apply and this reader does not, such as "skins"; "": none. */
+    char not_applied[160];
+
+    /* Of 3MF: triangles of modifiers, blockers of supports and negative volumes, as slicers call
+     * them: left out. */
+    size_t modifier_triangles;
 } cw_mesh_file;
 
 /* Reads a mesh: all parts of the file, merged, in LPS millimetres.
@@ -380,7 +393,8 @@ typedef struct cw_mesh_file {
  * Vertices keep their numbers, also those that no triangle names. Positions keep their bits
  * where the file has single precision. STL shares nothing: its corners at equal coordinates
  * become one vertex, and its facet normals are ignored. Triangles without area are kept. A
- * polygon becomes a fan around its first corner, which is right when the polygon is convex.
+ * polygon becomes a fan around its first corner where that is right, as when it is convex; else it
+ * is cut into triangles by its ears, as seen along the axis along which it is largest.
  * Normals are kept when every vertex has one that is finite, and OBJ does not name two for it.
  * A file without triangles gives a mesh without triangles, and CW_OK.
  *

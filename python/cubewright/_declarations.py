@@ -1840,6 +1840,11 @@ class cw_mesh_file(Structure):
     truncated: bool
     expected_triangles: int
     fault: Any
+    crossing: int
+    miscounted: bool
+    attribute_bytes: int
+    not_applied: Any
+    modifier_triangles: int
 
 
 cw_mesh_file._fields_ = [
@@ -1859,6 +1864,11 @@ cw_mesh_file._fields_ = [
     ("truncated", c_bool),
     ("expected_triangles", c_size_t),
     ("fault", c_char * 160),
+    ("crossing", c_size_t),
+    ("miscounted", c_bool),
+    ("attribute_bytes", c_uint64),
+    ("not_applied", c_char * 160),
+    ("modifier_triangles", c_size_t),
 ]
 
 

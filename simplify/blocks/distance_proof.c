@@ -50,7 +50,7 @@ static bool is_near_facet(const cwi_surface_walk *walk, const double corners[3][
 static bool is_within(const walks *w, size_t t)
 {
     const double limit = w->limits ? w->limits[t] : w->limit;
-    cwi_surface_walk walk = {w->surface, limit * limit, w->begin[t]};
+    cwi_surface_walk walk = {.fans = w->surface, .enough = limit * limit, .at = w->begin[t]};
     cwi_cover cover = {.nearest = find_facet, .context = &walk, .distance_sq = walk.enough};
     double corners[3][3];
     cwi_mesh_corners(w->mesh, t, corners);
@@ -245,9 +245,11 @@ static cw_status begin_at_result(const cwi_passes *p, const cwi_block_part *x, u
             nearest_triangle[v] = (uint32_t)t + 1;
     for (size_t t = 0; t < x->input.triangle_count; t++) {
         begin[t] = NOT_KNOWN;
-        for (size_t k = 0; k < 3 && begin[t] == NOT_KNOWN; k++) {
-            const uint32_t v = x->input.triangles[3 * t + k];
-            begin[t] = nearest_triangle[x->global_ids ? x->global_ids[v] : v] - 1;
+        for (size_t k = 0; k < 6 && begin[t] == NOT_KNOWN; k++) {
+            const uint32_t local = x->input.triangles[3 * t + k % 3],
+                           v = x->global_ids ? x->global_ids[local] : local;
+            if (k >= 3 || !cwi_fan_is_wide(&p->original.fans, v))
+                begin[t] = nearest_triangle[v] - 1;
         }
     }
     cwi_free(nearest_triangle);
@@ -263,21 +265,27 @@ static void begin_at_input(const cwi_passes *p, const cwi_mesh_block *left, uint
     }
 }
 
-/* Begins elsewhere as triangles at a corner do. */
+/* Begins elsewhere as triangles at a corner do, at best one whose fan is not wide. */
 static cw_status begin_as_neighbours(const cw_mesh *mesh, uint32_t *begin, cw_error *err)
 {
     uint32_t *at = cwi_alloc_array(mesh->vertex_count, sizeof *at);
-    if (!at)
-        return cwi_fail_memory(err);
-    memset(at, 0xff, mesh->vertex_count * sizeof *at);
-    for (size_t c = 0; c < 3 * mesh->triangle_count; c++)
+    uint32_t *count = cwi_alloc_zeroed(mesh->vertex_count, sizeof *count);
+    const bool ok = at && count;
+    for (size_t v = 0; v < mesh->vertex_count && ok; v++)
+        at[v] = NOT_KNOWN;
+    for (size_t c = 0; c < 3 * mesh->triangle_count && ok; c++) {
+        count[mesh->triangles[c]]++;
         if (begin[c / 3] != NOT_KNOWN)
             at[mesh->triangles[c]] = begin[c / 3];
-    for (size_t c = 0; c < 3 * mesh->triangle_count; c++)
-        if (begin[c / 3] == NOT_KNOWN)
-            begin[c / 3] = at[mesh->triangles[c]];
+    }
+    for (int wide = 0; wide < 2 && ok; wide++)
+        for (size_t c = 0; c < 3 * mesh->triangle_count; c++)
+            if (begin[c / 3] == NOT_KNOWN &&
+                (wide || count[mesh->triangles[c]] <= CWI_WIDE_FAN))
+                begin[c / 3] = at[mesh->triangles[c]];
     cwi_free(at);
-    return CW_OK;
+    cwi_free(count);
+    return ok ? CW_OK : cwi_fail_memory(err);
 }
 
 static cw_status prove_input(const cwi_passes *p, const cwi_block_part *x, uint8_t *beyond,

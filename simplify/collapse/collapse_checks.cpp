@@ -55,6 +55,17 @@ void add_triangles(const Surface &surface, VertexHandle center, VertexHandle oth
 
 } // namespace
 
+bool OneRing::is_small(const Surface &surface, HalfedgeHandle edge)
+{
+    size_t edges = 0;
+    for (const VertexHandle v :
+         {surface.from_vertex_handle(edge), surface.to_vertex_handle(edge)})
+        for (auto h = surface.cvoh_iter(v); h.is_valid(); ++h)
+            if (++edges > MAX_RING + 4) // the edge itself and its triangles do not stay
+                return false;
+    return true;
+}
+
 bool OneRing::gather(const Surface &surface, HalfedgeHandle collapsed, const Vec &to)
 {
     const VertexHandle u = surface.from_vertex_handle(collapsed),
@@ -103,7 +114,7 @@ bool Shape::is_kept(const OneRing &ring) const
         const float longest =
             std::max((s.pb - s.pa).sqrnorm(), std::max((s.pa - ring.position).sqrnorm(),
                                                        (s.pb - ring.position).sqrnorm()));
-        if (now < 1e-7f * longest * longest)
+        if (now < 1e-7f * longest * longest && now < before) // needles may stay, and get wider
             return false;
     }
     return true;

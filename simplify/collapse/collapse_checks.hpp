@@ -20,7 +20,14 @@ struct RingTriangle {
     Vec normal;
 };
 
+// Collapses around which more triangles would stay are not tried: their cost grows with the square
+// of that number. The fan shrinks by collapses at its rim, and is tried then.
+enum { MAX_RING = CWI_WIDE_FAN };
+
 struct OneRing {
+    // Returns true if at most MAX_RING triangles are around an edge.
+    static bool is_small(const Surface &surface, HalfedgeHandle edge);
+
     // Collects the triangles around a halfedge whose start collapses into its end, which moves
     // to `to`.
     bool gather(const Surface &surface, HalfedgeHandle collapsed, const Vec &to);

@@ -13,6 +13,10 @@ namespace cw
 namespace
 {
 
+// Triangles of a ring up to which every walk starts at the moved vertex. In larger ones the next
+// triangle is near the end of the last walk: walks around a fan would be long.
+const size_t NEARBY_RING = 192;
+
 // The share of a segment at which it is nearest to what lies `from` its start.
 float share_near(const Vec &from, const Vec &along)
 {
@@ -185,7 +189,8 @@ bool Bound::is_ring_near(const OneRing &ring, uint32_t triangles, float distance
             corner[1][k] = double(s.pa[k]);
             corner[2][k] = double(s.pb[k]);
         }
-        passage.walk.at = nearest;
+        if (ring.triangles.size() <= NEARBY_RING)
+            passage.walk.at = nearest;
         if (!cwi_is_covered(&cover, corner))
             return false;
     }
@@ -204,7 +209,8 @@ void Bound::add_around(const Surface &surface, const OneRing &ring)
         marks[s.face] = mark;
     for (const RingTriangle &s : ring.triangles)
         for (uint32_t v : {s.a, s.b})
-            for (auto f = surface.cvf_iter(VertexHandle(int(v))); f.is_valid(); ++f) {
+            for (auto f = surface.cvf_iter(VertexHandle(int(v)));
+                 f.is_valid() && !facets.is_full(); ++f) {
                 uint32_t &last = marks[size_t(f->idx())];
                 if (last == mark)
                     continue;
@@ -277,11 +283,13 @@ bool Bound::are_doubts_near(const Surface &surface, const OneRing &ring)
 // The exact bounds decide where crossing edges do not.
 bool Bound::is_covered(const Surface &surface, const OneRing &ring, float distance)
 {
-    if (!overlay.lay(ring))
+    const bool laid = overlay.lay(ring);
+    if (laid && overlay.compare(points, distance))
+        return true;
+    if (!laid || overlay.meets_wide_fan)
         return is_ring_near(ring, UINT32_MAX, distance) && is_original_near(surface, ring);
-    return overlay.compare(points, distance) ||
-           (is_ring_near(ring, overlay.ring_triangles_in_doubt, distance) &&
-            are_doubts_near(surface, ring));
+    return is_ring_near(ring, overlay.ring_triangles_in_doubt, distance) &&
+           are_doubts_near(surface, ring);
 }
 
 // Runs the checks that refuse most for the least work first.

@@ -30,6 +30,7 @@ struct alignas(64) Node {
     uint32_t changed; // when it last did
     bool locked, border;
     bool open; // edges at it may be collapsed where there is more room
+    bool wide; // edges at it were not tried, as too many triangles are around it
 };
 
 } // namespace
@@ -275,6 +276,10 @@ private:
             stays.open = true;
             return;
         }
+        if (!OneRing::is_small(surface, p.halfedge)) {
+            node(surface.from_vertex_handle(p.halfedge)).wide = stays.wide = true;
+            return;
+        }
         if (!surface.is_collapse_ok(p.halfedge) ||
             !ring.gather(surface, p.halfedge, p.position) || !shape.is_kept(ring) ||
             shells.turns(surface, ring, &stays.open) || !bound.is_kept(surface, ring) ||
@@ -284,6 +289,9 @@ private:
         shells.change(ring);
         if (gradients.is_requested())
             store_gradients(p);
+        const VertexHandle sides[2] = {
+            vertex_across(p.halfedge),
+            vertex_across(surface.opposite_halfedge_handle(p.halfedge))};
         surface.set_point(kept, p.position);
         surface.collapse(p.halfedge);
         if (contact)
@@ -296,6 +304,36 @@ private:
         live -= ring.gone.size();
         for (auto e = surface.cve_iter(kept); e.is_valid(); ++e)
             wait_again(*e, kept, p.cost);
+        for (const VertexHandle side : sides)
+            if (side.is_valid() && node(side).wide)
+                try_narrowed(side, p.cost);
+    }
+
+    // The third vertex of a halfedge's triangle; invalid at a border.
+    VertexHandle vertex_across(HalfedgeHandle h) const
+    {
+        return surface.is_boundary(h)
+                   ? VertexHandle()
+                   : surface.to_vertex_handle(surface.next_halfedge_handle(h));
+    }
+
+    // Puts the edges at a vertex into the queue that were not tried because of its many triangles, as
+    // soon as these are few enough.
+    void try_narrowed(VertexHandle v, float cost)
+    {
+        const HalfedgeHandle any = surface.halfedge_handle(v);
+        if (!any.is_valid() || !OneRing::is_small(surface, any))
+            return;
+        node(v).wide = false;
+        for (auto e = surface.cve_iter(v); e.is_valid(); ++e) {
+            const auto i = size_t(e->idx());
+            const HalfedgeHandle h = surface.halfedge_handle(*e, 0);
+            if (waiting[i] || node(surface.from_vertex_handle(h)).locked ||
+                node(surface.to_vertex_handle(h)).locked)
+                continue;
+            waiting[i] = true;
+            queue.push(Queue::entry(std::max(propose(*e).cost, cost), uint32_t(i)));
+        }
     }
 
     // Puts an edge into the queue again: a collapse that was refused before may pass now.

@@ -40,13 +40,15 @@ float edges_distance_sq(const Vec &p, const Vec &q, const Vec &a, const Vec &b)
 } // namespace
 
 Overlay::Overlay(const cwi_original *original_)
-    : original(original_), numbers(nullptr, cwi_free)
+    : original(original_), numbers(nullptr, cwi_free), outer_numbers(nullptr, cwi_free)
 {
     if (!original)
         return;
+    const size_t triangles = original->fans.first[original->vertices] / 3;
     numbers.reset(
         static_cast<uint32_t *>(cwi_alloc_zeroed(original->vertices, sizeof(uint32_t))));
-    if (!numbers)
+    outer_numbers.reset(static_cast<uint32_t *>(cwi_alloc_zeroed(triangles, sizeof(uint32_t))));
+    if (!numbers || !outer_numbers)
         throw std::bad_alloc();
 }
 
@@ -191,6 +193,7 @@ void Overlay::doubt_ring_triangles(uint32_t corner)
 // Those on both sides of an edge.
 void Overlay::doubt_triangles(uint32_t from, uint32_t to)
 {
+    cwi_fans_choose_end(&original->fans, &from, &to);
     for (uint32_t n = original->fans.first[from]; n < original->fans.first[from + 1]; n++) {
         const uint32_t *c = original->fans.corners + 3 * size_t(original->fans.around[n]);
         if (c[0] == to || c[1] == to || c[2] == to)
@@ -236,16 +239,27 @@ bool Overlay::has_point(const uint32_t v[3], uint32_t point_count) const
     return false;
 }
 
+void Overlay::add_outer(uint32_t triangle)
+{
+    uint32_t &number = outer_numbers.get()[triangle];
+    if (number < outer.size() && outer[number] == triangle)
+        return;
+    number = uint32_t(outer.size());
+    outer.push_back(triangle);
+}
+
 // Adds the triangles on the other side of an edge, if no point is at them.
 void Overlay::look_across(uint32_t i, uint32_t j, uint32_t point_count)
 {
-    const uint32_t from = vertices[i], to = vertices[j];
+    uint32_t from = vertices[i], to = vertices[j];
+    meets_wide_fan |=
+        cwi_fan_is_wide(&original->fans, from) || cwi_fan_is_wide(&original->fans, to);
+    cwi_fans_choose_end(&original->fans, &from, &to);
     for (uint32_t n = original->fans.first[from]; n < original->fans.first[from + 1]; n++) {
         const uint32_t t = original->fans.around[n],
                        *c = original->fans.corners + 3 * size_t(t);
-        if ((c[0] == to || c[1] == to || c[2] == to) && !has_point(c, point_count) &&
-            std::find(outer.begin(), outer.end(), t) == outer.end())
-            outer.push_back(t);
+        if ((c[0] == to || c[1] == to || c[2] == to) && !has_point(c, point_count))
+            add_outer(t);
     }
 }
 
@@ -301,16 +315,21 @@ bool Overlay::compare(const std::vector<uint32_t> &points, float distance)
     vertices.clear();
     corners.clear();
     outer.clear();
-    for (uint32_t p : points)
+    meets_wide_fan = false;
+    for (uint32_t p : points) {
         locate(p);
+        meets_wide_fan |= cwi_fan_is_wide(&original->fans, p);
+    }
+    if (meets_wide_fan)
+        return false;
     const uint32_t point_count = uint32_t(points.size());
     locate_fans(point_count);
     const uint32_t *others = across.data();
     for (uint32_t i = 0; i < point_count; i++)
         others = compare_fan(i, point_count, others);
-    for (size_t n = 0; n < outer.size(); n++)
+    for (size_t n = 0; n < outer.size() && !meets_wide_fan; n++)
         compare_outer(outer[n], point_count);
-    return triangles_in_doubt.empty();
+    return triangles_in_doubt.empty() && !meets_wide_fan;
 }
 
 } // namespace cw

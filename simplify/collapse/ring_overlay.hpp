@@ -23,8 +23,11 @@ public:
 
     // Compares edges of the original's triangles at points with edges of the ring that they
     // cross. Notes the triangles and the ring triangles at edges that are not within the distance for
-    // certain. Returns true if all are.
+    // certain. Returns true if all are. Stops at wide fans of the original:
+    // meets_wide_fan is true then, and nothing is decided.
     bool compare(const std::vector<uint32_t> &points, float distance);
+
+    bool meets_wide_fan;
 
     uint32_t ring_triangles_in_doubt;         // bit n: ring triangle n
     std::vector<uint32_t> triangles_in_doubt; // of the original
@@ -56,6 +59,7 @@ private:
     void compare_outer(uint32_t triangle, uint32_t point_count);
     bool has_point(const uint32_t v[3], uint32_t point_count) const;
     void look_across(uint32_t i, uint32_t j, uint32_t point_count);
+    void add_outer(uint32_t triangle);
     void doubt_triangles(uint32_t from, uint32_t to);
     bool is_crossing_near(const Corner &p, const Corner &q, const Vec &a, const Vec &b,
                           bool *crosses) const;
@@ -63,7 +67,9 @@ private:
 
     const cwi_original *original;
     std::unique_ptr<uint32_t, void (*)(void *)>
-        numbers;                    // vertices: their place, if it is theirs
+        numbers; // vertices: their place, if it is theirs
+    std::unique_ptr<uint32_t, void (*)(void *)>
+        outer_numbers;              // triangles: their place in `outer`, if it is theirs
     std::vector<uint32_t> vertices; // that have a place
     std::vector<Corner> corners;
     std::vector<uint32_t> across; // places of the other corners of triangles at points

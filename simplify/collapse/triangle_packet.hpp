@@ -21,6 +21,12 @@ public:
         uint64_t near;
     };
 
+    // Returns true if no point would be looked at from further facets.
+    bool is_full() const
+    {
+        return corners.size() >= 64;
+    }
+
     void clear(float distance_)
     {
         distance = distance_;

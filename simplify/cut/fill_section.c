@@ -65,6 +65,28 @@ static bool make_rings(cwi_section *s)
     return true;
 }
 
+static bool add_triangle(void *user, uint32_t a, uint32_t b, uint32_t c)
+{
+    cwi_cut *cut = user;
+    cut->facts.cap_triangles++;
+    return cwi_cut_add_triangle(cut, a, b, c);
+}
+
+cw_status cwi_section_clip_ears(cwi_section *s, const cwi_section_loop *loop, cw_error *err)
+{
+    cwi_ears ears = {.positions = s->cut->positions,
+                     .nodes = s->nodes,
+                     .node_count = s->node_count,
+                     .axis = s->cut->axis,
+                     .direction = s->direction,
+                     .tolerance = s->cut->tolerance,
+                     .is_flipped = loop->is_free,
+                     .add = add_triangle,
+                     .user = s->cut,
+                     .progress = &s->cut->desc.progress};
+    return cwi_clip_ears(&ears, loop->begin, err);
+}
+
 static cw_status fill_rings(cwi_section *s, cw_error *err)
 {
     cw_cut_facts *f = &s->cut->facts;

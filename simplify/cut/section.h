@@ -2,14 +2,11 @@
 #ifndef SIMPLIFY_CUT_SECTION_H
 #define SIMPLIFY_CUT_SECTION_H
 
-#include "core/geometry/exact_predicates.h"
+#include "core/mesh/clip_ears.h"
 #include "simplify/cut/cut_state.h"
 
-/* A vertex of a ring. A vertex at which a hole is joined to a ring has two nodes. */
-typedef struct cwi_section_node {
-    uint32_t vertex, next, prev;
-    uint32_t loop;
-} cwi_section_node;
+/* loop: the number of the node's loop */
+typedef cwi_ring_node cwi_section_node;
 
 /* A closed loop of the section. */
 typedef struct cwi_section_loop {

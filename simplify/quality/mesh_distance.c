@@ -16,6 +16,7 @@
 #include "core/geometry/point_triangle.h"
 #include "core/geometry/triangle_cover.h"
 #include "core/geometry/vec3.h"
+#include "core/mesh/triangle_boxes.h"
 #include "simplify/quality/mesh_within.h"
 #include "simplify/quality/surface_sampling.h"
 
@@ -31,7 +32,7 @@ typedef struct facet {
 
 typedef struct reference {
     cwi_boxes tree;
-    facet *facets;   /* in the tree's order */
+    facet *facets;   /* in the tree's order, which may name one more than once */
     double shift[3]; /* from the mesh's origin to the reference's */
     double diagonal, side;
 } reference;
@@ -365,7 +366,7 @@ static cw_status find_bound(search *s, const cw_mesh_distance_desc *d, cw_distan
     return st;
 }
 
-static void set_boxes(reference *r, const cw_mesh *mesh, float (*boxes)[6])
+static void measure_extent(reference *r, const cw_mesh *mesh)
 {
     double low[3], high[3];
     cwi_box_clear(low, high);
@@ -376,7 +377,6 @@ static void set_boxes(reference *r, const cw_mesh *mesh, float (*boxes)[6])
             r->side += cwi_distance(p[c], p[(c + 1) % 3]);
             cwi_box_add(low, high, p[c]);
         }
-        cwi_boxes_triangle(mesh->positions, mesh->triangles + 3 * t, boxes[t]);
     }
     if (mesh->triangle_count)
         r->diagonal = cwi_box_diagonal(low, high);
@@ -396,21 +396,17 @@ static void set_facets(reference *r, const cw_mesh *mesh)
 static cw_status make_reference(reference *r, const cw_mesh *mesh, const double origin[3],
                                 cw_error *err)
 {
-    const size_t count = mesh->triangle_count;
-    cw_status st = CW_OK;
-    float(*boxes)[6] = cwi_alloc_array(count, sizeof *boxes);
-    r->facets = cwi_alloc_array(count, sizeof *r->facets);
     cwi_sub(mesh->origin, origin, r->shift);
-    if (!boxes || !r->facets)
-        st = cwi_fail_memory(err);
-    if (st == CW_OK) {
-        set_boxes(r, mesh, boxes);
-        st = cwi_boxes_build(&r->tree, (const float(*)[6])boxes, count, err);
-    }
-    if (st == CW_OK)
-        set_facets(r, mesh);
-    cwi_free(boxes);
-    return st;
+    measure_extent(r, mesh);
+    cw_status st = cwi_triangle_boxes_build(&r->tree, mesh->positions, mesh->vertex_count,
+                                            mesh->triangles, mesh->triangle_count, err);
+    if (st != CW_OK)
+        return st;
+    r->facets = cwi_alloc_array(r->tree.count, sizeof *r->facets);
+    if (!r->facets)
+        return cwi_fail_memory(err);
+    set_facets(r, mesh);
+    return CW_OK;
 }
 
 static cw_status check_reference(const cw_mesh *mesh, cw_error *err)

@@ -52,7 +52,10 @@ typedef struct work {
     chunk_sums *chunks;
     ray *rays; /* of all closed shells */
     size_t ray_count;
-    cwi_boxes tree; /* of the starts of the rays */
+    cwi_boxes tree;    /* of the starts of the rays */
+    uint32_t *slot_of; /* rays: their slot in the tree */
+    ray *
+        node_sums; /* nodes of the tree: winding and met of triangles that all their rays meet */
 } work;
 
 /* Rays that may meet the triangles of a block. */
@@ -69,7 +72,9 @@ typedef struct found_rays {
 typedef struct seeker {
     work *w;
     size_t triangle;
-    const float *box;
+    const float *corner[3];
+    float before[6];   /* box of the places whose rays may meet it */
+    uint32_t own_slot; /* of its shell's ray, or UINT32_MAX */
 } seeker;
 
 /* --- components --------------------------------------------------------------------------- */
@@ -221,6 +226,13 @@ static bool starts_in(const float start[3], const float box[6])
            start[2] <= box[5] && start[0] <= box[3];
 }
 
+static void count_meeting(const work *w, ray *r, size_t triangle, int winding)
+{
+    __atomic_fetch_add(&r->winding, winding, __ATOMIC_RELAXED);
+    if (!w->shells->unbounded[w->part[w->welded->vertex[3 * triangle]]])
+        __atomic_fetch_add(&r->met, 1, __ATOMIC_RELAXED);
+}
+
 /* Counts a triangle, unless it is of the ray's shell. One without area meets no ray. */
 static void meet_ray(work *w, uint32_t k, size_t triangle)
 {
@@ -234,11 +246,8 @@ static void meet_ray(work *w, uint32_t k, size_t triangle)
     for (int n = 0; n < 3; n++)
         corner[n] = w->welded->points + 3 * (size_t)v[n];
     const int winding = winding_of(corner, &start);
-    if (winding && winding * side_of_plane(corner, &start) < 0) {
-        __atomic_fetch_add(&w->rays[k].winding, winding, __ATOMIC_RELAXED);
-        if (!w->shells->unbounded[w->part[v[0]]])
-            __atomic_fetch_add(&w->rays[k].met, 1, __ATOMIC_RELAXED);
-    }
+    if (winding && winding * side_of_plane(corner, &start) < 0)
+        count_meeting(w, &w->rays[k], triangle, winding);
 }
 
 static bool find_rays(void *context, size_t node)
@@ -260,15 +269,101 @@ static bool find_rays(void *context, size_t node)
     return true;
 }
 
-static bool meet_rays(void *context, size_t node)
+static ray *find_ray(const work *w, uint32_t shell)
 {
-    const seeker *s = context;
-    for (size_t c = 0; c < CWI_WIDTH && node * CWI_WIDTH + c < s->w->ray_count; c++) {
-        const uint32_t k = s->w->tree.order[node * CWI_WIDTH + c];
-        if (starts_in(start_of(s->w, k), s->box))
-            meet_ray(s->w, k, s->triangle);
+    size_t low = 0, high = w->ray_count;
+    while (low < high) {
+        const size_t middle = (low + high) / 2;
+        if (w->rays[middle].shell < shell)
+            low = middle + 1;
+        else
+            high = middle;
     }
-    return true;
+    return low < w->ray_count && w->rays[low].shell == shell ? &w->rays[low] : NULL;
+}
+
+static void get_corner(const float box[6], unsigned n, float p[3])
+{
+    for (unsigned a = 0; a < 3; a++)
+        p[a] = box[a + (n >> a & 1 ? 3 : 0)];
+}
+
+/* Returns the side of an edge on which all of a box is, seen along x; 0 if that is none for certain. */
+static int side_of_box(const float *a, const float *b, const float box[6])
+{
+    int side = 0;
+    for (unsigned n = 0; n < 8; n += 2) { /* corners that differ in y or z */
+        float p[3];
+        get_corner(box, n, p);
+        const int here = cwi_orient2d(a, b, p, 0);
+        if (!here || (n && here != side))
+            return 0;
+        side = here;
+    }
+    return side;
+}
+
+/* Returns the winding of a triangle around all places in a box whose rays meet it, 0 if none does.
+ * *mixed: set to true if that is not the same for all of them for certain. */
+static int winding_around(const float *const corner[3], const float box[6], bool *mixed)
+{
+    const int turn = cwi_orient2d(corner[0], corner[1], corner[2], 0);
+    int within = 0, ahead = 0;
+    float p[3];
+    for (int e = 0; e < 3; e++) {
+        const int side = side_of_box(corner[e], corner[(e + 1) % 3], box);
+        if (!turn || side == -turn)
+            return 0;
+        within += side == turn;
+    }
+    for (unsigned n = 0; n < 8 && within == 3; n++) {
+        get_corner(box, n, p);
+        const int side = cwi_orient3d(corner[0], corner[1], corner[2], p);
+        if (!side || (n && side != ahead))
+            within = 0;
+        ahead = side;
+    }
+    *mixed = within < 3;
+    const int winding = *mixed ? 0 : winding_of(corner, &(moved_start){{p, p, p}});
+    return winding * ahead < 0 ? winding : 0;
+}
+
+/* Lets a triangle meet the rays of a node. It is counted once for all rays of a child that meet it for
+ * certain, unless the ray of its own shell is among them. */
+static void meet_node(const seeker *s, int level, size_t node)
+{
+    work *w = s->w;
+    const cwi_boxes_node *boxes = &w->tree.nodes[w->tree.first[level] + node];
+    for (unsigned left = cwi_boxes_meeting(boxes, s->before); left; left &= left - 1) {
+        const unsigned c = (unsigned)__builtin_ctz(left);
+        const size_t child = node * CWI_WIDTH + c;
+        if (level == 0) {
+            meet_ray(w, w->tree.order[child], s->triangle);
+            continue;
+        }
+        const float box[6] = {boxes->low[0][c],  boxes->low[1][c],  boxes->low[2][c],
+                              boxes->high[0][c], boxes->high[1][c], boxes->high[2][c]};
+        bool mixed = s->own_slot >> 3 * level == child;
+        const int winding = mixed ? 0 : winding_around(s->corner, box, &mixed);
+        if (mixed)
+            meet_node(s, level - 1, child);
+        else if (winding)
+            count_meeting(w, &w->node_sums[w->tree.first[level - 1] + child], s->triangle,
+                          winding);
+    }
+}
+
+static void meet_all(work *w, size_t triangle, const float box[6])
+{
+    const uint32_t *v = w->welded->vertex + 3 * triangle;
+    const ray *own = find_ray(w, w->part[v[0]]);
+    seeker s = {.w = w,
+                .triangle = triangle,
+                .before = {-INFINITY, box[1], box[2], box[3], box[4], box[5]},
+                .own_slot = own ? w->slot_of[own - w->rays] : UINT32_MAX};
+    for (int n = 0; n < 3; n++)
+        s.corner[n] = w->welded->points + 3 * (size_t)v[n];
+    meet_node(&s, w->tree.levels - 1, 0);
 }
 
 static void meet_found(work *w, const found_rays *f, size_t triangle, const float box[6])
@@ -278,14 +373,6 @@ static void meet_found(work *w, const found_rays *f, size_t triangle, const floa
         if ((y >= box[1]) & (y <= box[4]) & (z >= box[2]) & (z <= box[5]) & (x <= box[3]))
             meet_ray(w, f->ray[n], triangle);
     }
-}
-
-/* Rays that run along +x into a box start within it or before it. */
-static void visit_starts(const work *w, const float box[6], bool (*visit)(void *, size_t),
-                         void *context)
-{
-    const float before[6] = {-INFINITY, box[1], box[2], box[3], box[4], box[5]};
-    cwi_boxes_visit(&w->tree, before, 0, visit, context);
 }
 
 /* Lets the triangles of a block meet the rays near it. Neighbours in number mostly are
@@ -306,10 +393,12 @@ static void meet_block(work *w, size_t first, size_t count)
     found.box = around;
     found.count = 0;
     found.too_many = false;
-    visit_starts(w, around, find_rays, &found);
+    /* rays that run along +x into a box start within it or before it */
+    const float before[6] = {-INFINITY, around[1], around[2], around[3], around[4], around[5]};
+    cwi_boxes_visit(&w->tree, before, 0, find_rays, &found);
     for (size_t i = 0; i < count && found.count; i++)
         if (found.too_many)
-            visit_starts(w, boxes[i], meet_rays, &(seeker){w, first + i, boxes[i]});
+            meet_all(w, first + i, boxes[i]);
         else
             meet_found(w, &found, first + i, boxes[i]);
 }
@@ -326,6 +415,28 @@ static void meet_chunk(void *context, size_t k)
 static bool is_closed(const work *w, uint32_t v)
 {
     return w->part[v] == v && w->shells->used[v] && !w->shells->unbounded[v];
+}
+
+/* Returns false when memory is out. */
+static bool prepare_sums(work *w)
+{
+    const size_t root = w->tree.levels ? w->tree.first[w->tree.levels - 1] : 0;
+    w->node_sums = cwi_alloc_zeroed(root + 1, sizeof *w->node_sums);
+    w->slot_of = cwi_alloc_array(w->ray_count, sizeof *w->slot_of);
+    for (uint32_t s = 0; s < w->ray_count && w->slot_of; s++)
+        w->slot_of[w->tree.order[s]] = s;
+    return w->node_sums && w->slot_of;
+}
+
+/* Adds to each ray the sums of the nodes above it. */
+static void add_node_sums(work *w)
+{
+    for (size_t s = 0; s < w->ray_count; s++)
+        for (int level = 0; level < w->tree.levels; level++) {
+            const ray *sums = &w->node_sums[w->tree.first[level] + (s >> 3 * (level + 1))];
+            w->rays[w->tree.order[s]].winding += sums->winding;
+            w->rays[w->tree.order[s]].met += sums->met;
+        }
 }
 
 /* Sends a ray from each closed shell. Returns false when memory is out. */
@@ -348,20 +459,7 @@ static bool start_rays(work *w)
         w->rays && boxes &&
         cwi_boxes_build(&w->tree, (const float(*)[6])boxes, w->ray_count, NULL) == CW_OK;
     cwi_free(boxes);
-    return ok;
-}
-
-static ray *find_ray(const work *w, uint32_t shell)
-{
-    size_t low = 0, high = w->ray_count;
-    while (low < high) {
-        const size_t middle = (low + high) / 2;
-        if (w->rays[middle].shell < shell)
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    return low < w->ray_count && w->rays[low].shell == shell ? &w->rays[low] : NULL;
+    return ok && prepare_sums(w);
 }
 
 static bool has_area(const work *w, const uint32_t v[3])
@@ -397,9 +495,11 @@ static bool wind_around(work *w, const cw_quality_desc *d, const cw_quality *q)
         return false;
     if (w->ray_count && q->components > 1)
         move_starts(w);
-    return !w->ray_count || q->components < 2 ||
-           cwi_parallel_for(chunk_count(w), CHUNK * 32, d->threads, &d->progress, "checking",
-                            meet_chunk, w, NULL) == CW_OK;
+    const bool ok = !w->ray_count || q->components < 2 ||
+                    cwi_parallel_for(chunk_count(w), CHUNK * 32, d->threads, &d->progress,
+                                     "checking", meet_chunk, w, NULL) == CW_OK;
+    add_node_sums(w);
+    return ok;
 }
 
 /* --- verdicts ----------------------------------------------------------------------------- */
@@ -458,6 +558,8 @@ bool cwi_measure_shells(const cwi_welded *welded, const cwi_shells *shells,
     if (ok)
         judge_shells(&w, desc, q);
     cwi_boxes_free(&w.tree);
+    cwi_free(w.slot_of);
+    cwi_free(w.node_sums);
     cwi_free(w.rays);
     cwi_free(w.volume);
     cwi_free(w.area);

@@ -4,6 +4,7 @@
 #include "core/geometry/closest_point.h"
 #include "core/geometry/vec3.h"
 #include "core/mesh/corner_table.h"
+#include "core/mesh/triangle_boxes.h"
 #include "simplify/remesh/remesh_state.h"
 
 #include <string.h>
@@ -262,7 +263,9 @@ cw_status cwi_remesh_begin(cwi_remesh *r, cw_error *err)
     r->surface.mesh = *r->input;
     st = list_curves(r, err);
     if (st == CW_OK)
-        st = cwi_closest_build(r->input, &r->surface.tree, err);
+        st = cwi_triangle_boxes_build(&r->surface.tree, r->input->positions,
+                                      r->input->vertex_count, r->input->triangles,
+                                      r->input->triangle_count, err);
     if (st == CW_OK)
         set_limits(r);
     return st;

@@ -4,6 +4,7 @@
 #include "core/geometry/bvh.h"
 
 #include <math.h>
+#include <stdlib.h>
 
 enum { SIDE = 16, COUNT = SIDE * SIDE * SIDE };
 
@@ -30,8 +31,31 @@ static void order_leads_to_neighbours(void **state)
     cwi_boxes_free(&tree);
 }
 
+/* One box more than those that are sorted by comparing them. */
+static void few_boxes_are_sorted_as_many_are(void **state)
+{
+    (void)state;
+    static float boxes[COUNT + 1][6];
+    cwi_boxes few, many;
+    cw_error err = {0};
+    test_seed(3);
+    for (int n = 0; n < COUNT; n++)
+        for (int a = 0; a < 3; a++)
+            boxes[n][a] = boxes[n][a + 3] = (float)(rand() % 9);
+    for (int a = 0; a < 6; a++)
+        boxes[COUNT][a] = boxes[0][a];
+    assert_ok(cwi_boxes_build(&few, (const float(*)[6])boxes, COUNT, &err), err);
+    assert_ok(cwi_boxes_build(&many, (const float(*)[6])boxes, COUNT + 1, &err), err);
+    for (size_t s = 0, n = 0; s <= COUNT; s++)
+        if (many.order[s] != COUNT)
+            assert_int_equal(few.order[n++], many.order[s]);
+    cwi_boxes_free(&few);
+    cwi_boxes_free(&many);
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(order_leads_to_neighbours)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(order_leads_to_neighbours),
+                                       cmocka_unit_test(few_boxes_are_sorted_as_many_are)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

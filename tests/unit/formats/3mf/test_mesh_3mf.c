@@ -73,6 +73,59 @@ static void a_plain_model_is_read(void **state)
     cw_mesh_free(&mesh);
 }
 
+/* Modifiers of slicers: ranges of triangles, or objects that others are made of. */
+static void modifiers_of_slicers_are_left_out(void **state)
+{
+    (void)state;
+    static const char model[] = MODEL "><resources>" FOUR("1") FOUR(
+        "2") "<object id='3'><components><component objectid='1'/>"
+             "<component objectid='2' transform='1 0 0 0 1 0 0 0 1 9 9 9'/></components></object>" BUILD(
+                 "<item objectid='3'/>");
+    static const struct {
+        const char *name, *text;
+        size_t left, left_out;
+    } cases[] = {
+        {"Metadata/Slic3r_PE_model.config",
+         "<config><object id='2'><volume firstid='0' lastid='3'><metadata type='volume' "
+         "key='volume_type' value='ParameterModifier'/></volume></object></config>",
+         4, 4},
+        {"Metadata/Slic3r_PE_model.config",
+         "<config><object id='2'><volume firstid='0' lastid='1'><metadata key='volume_type' "
+         "value='ModelPart'/></volume><volume firstid='2' lastid='3'><metadata key='volume_type' "
+         "value='SupportBlocker'/></volume></object><object id='1'><volume firstid='0' lastid='0'>"
+         "<metadata key='modifier' value='1'/></volume></object></config>",
+         5, 3},
+        {"Metadata/model_settings.config",
+         "<config><object id='3'><part id='1' subtype='normal_part'/><part id='2' "
+         "subtype='negative_part'/></object></config>",
+         4, 4},
+        {"Metadata/model_settings.config", "<config/>", 8, 0},
+    };
+    for (size_t n = 0; n < sizeof cases / sizeof *cases; n++) {
+        const zip_entry entries[] = {{"_rels/.rels", RELS, false},
+                                     {"3D/3dmodel.model", model, true},
+                                     {cases[n].name, cases[n].text, true}};
+        cw_mesh mesh;
+        cw_mesh_file file;
+        cw_error err = {0};
+        double low[3], high[3];
+        assert_ok(read_package(entries, 3, NULL, &mesh, &file, &err), err);
+        assert_int_equal(mesh.triangle_count, cases[n].left);
+        assert_int_equal(file.modifier_triangles, cases[n].left_out);
+        assert_true(cw_mesh_bounds(&mesh, low, high));
+        assert_true(cases[n].left > 4 || high[0] == 1); /* their points are left out, too */
+        cw_mesh_free(&mesh);
+    }
+    const zip_entry broken[] = {
+        {"_rels/.rels", RELS, false},
+        {"3D/3dmodel.model", model, true},
+        {"Metadata/Slic3r_PE_model.config", "<config><object id='x'/></config>", true}};
+    cw_mesh mesh;
+    cw_error err = {0};
+    assert_fails(read_package(broken, 3, NULL, &mesh, NULL, &err), CW_ERR_FORMAT, "'id' is 'x'",
+                 err);
+}
+
 static void units_become_millimetres(void **state)
 {
     (void)state;
@@ -546,6 +599,7 @@ int main(void)
 #define TEST(name) cmocka_unit_test_setup_teardown(name, test_folder_make, test_folder_remove)
     const struct CMUnitTest tests[] = {
         TEST(a_plain_model_is_read),
+        TEST(modifiers_of_slicers_are_left_out),
         TEST(units_become_millimetres),
         TEST(components_are_placed_one_in_another),
         TEST(a_common_move_is_the_origin),

@@ -77,10 +77,10 @@ static void binary_files_must_hold_what_they_count(void **state)
     cw_mesh mesh;
     cw_error err = {0};
     size_t size = make_binary(bytes, "cut", 3);
-    assert_fails(read_bytes("a.stl", bytes, size, &mesh, NULL, &err), CW_ERR_FORMAT,
+    assert_fails(read_bytes("a.stl", bytes, size + 1, &mesh, NULL, &err), CW_ERR_FORMAT,
                  "the header counts 3 facets; the file has room for 2", err);
     size = make_binary(bytes, "huge", 0xff000000u);
-    assert_fails(read_bytes("a.stl", bytes, size, &mesh, NULL, &err), CW_ERR_FORMAT,
+    assert_fails(read_bytes("a.stl", bytes, size + 1, &mesh, NULL, &err), CW_ERR_FORMAT,
                  "counts 4278190080 facets", err);
     assert_fails(read_bytes("a.stl", bytes, 50, &mesh, NULL, &err), CW_ERR_FORMAT,
                  "the file ends within the header", err);
@@ -89,6 +89,51 @@ static void binary_files_must_hold_what_they_count(void **state)
     memcpy(bytes + 84 + 50 + 12 + 16, &broken, 4);
     assert_fails(read_bytes("a.stl", bytes, size, &mesh, NULL, &err), CW_ERR_FORMAT,
                  "'y' of corner 1 of facet 1 is -inf", err);
+}
+
+/* Whole facets behind the header count more than it does, one way or the other. */
+static void the_size_decides_where_the_header_counts_wrong(void **state)
+{
+    (void)state;
+    static const uint32_t counts[] = {0, 1, 3, 200, 0xff0000ffu};
+    for (size_t n = 0; n < sizeof counts / sizeof *counts; n++) {
+        char bytes[200];
+        cw_mesh mesh;
+        cw_mesh_file file;
+        cw_error err = {0};
+        const size_t size = make_binary(bytes, "wrong", counts[n]);
+        assert_ok(read_bytes("a.stl", bytes, size, &mesh, &file, &err), err);
+        assert_int_equal(mesh.triangle_count, 2);
+        assert_true(file.miscounted && !file.truncated);
+        assert_int_equal(file.expected_triangles, counts[n]);
+        cw_mesh_free(&mesh);
+    }
+}
+
+/* Bytes behind each facet, as many as it states; a tail that is no facet belongs to none. */
+static void attributes_behind_facets_are_left_out(void **state)
+{
+    (void)state;
+    for (int more = 1; more < 60; more += 7) {
+        char bytes[400], plain[200];
+        cw_mesh mesh;
+        cw_mesh_file file;
+        cw_error err = {0};
+        make_binary(plain, "attributes", 2);
+        memset(bytes, 0x7f, sizeof bytes);
+        memcpy(bytes, plain, 84);
+        size_t at = 84;
+        for (int t = 0; t < 2; t++) {
+            memcpy(bytes + at, plain + 84 + 50 * t, 50);
+            bytes[at + 48] = (char)(more * (t + 1));
+            at += 50 + (size_t)more * (size_t)(t + 1);
+        }
+        assert_ok(read_bytes("a.stl", bytes, at, &mesh, &file, &err), err);
+        assert_int_equal(mesh.triangle_count, 2);
+        assert_int_equal(file.attribute_bytes, 3 * more);
+        assert_true(mesh.vertex_count >= 3 && fabsf(mesh.positions[0]) < 1e6f);
+        cw_mesh_free(&mesh);
+    }
 }
 
 /* Reads a file with `truncated`, and checks the facets and what the file tells. */
@@ -182,7 +227,8 @@ static void no_facets_and_a_tail_are_allowed(void **state)
     assert_int_equal(mesh.vertex_count + mesh.triangle_count, 0);
     assert_usable(&mesh);
     cw_mesh_free(&mesh);
-    make_binary(bytes, "one of two", 1);
+    make_binary(bytes, "one, and a tail", 1);
+    memset(bytes + 134, 0xff, 50);
     assert_ok(read_bytes("a.stl", bytes, 184, &mesh, NULL, &err), err);
     assert_int_equal(mesh.triangle_count, 1);
     cw_mesh_free(&mesh);
@@ -250,6 +296,8 @@ int main(void)
         TEST(corners_at_one_place_become_one_vertex),
         TEST(flat_facets_are_kept),
         TEST(binary_files_must_hold_what_they_count),
+        TEST(the_size_decides_where_the_header_counts_wrong),
+        TEST(attributes_behind_facets_are_left_out),
         TEST(whole_facets_of_a_binary_file_that_breaks_off_are_taken),
         TEST(whole_facets_of_a_text_that_breaks_off_are_taken),
         TEST(no_facets_and_a_tail_are_allowed),

@@ -171,7 +171,7 @@ static void damaged_files_are_told_where(void **state)
         {HEAD("HEX"), "line 3 is 'HEX'; it must be ASCII or BINARY"},
         {HEAD("ASCII"), "'DATASET' is missing"},
         {HEAD("ASCII") "DATASET FIELD\n", "'DATASET FIELD'; only"},
-        {HEAD("ASCII") "DATASET POLYDATA\n", "'DATASET POLYDATA'; only"},
+        {HEAD("ASCII") "DATASET POLYDATA\n", "this is a mesh (vtk)"},
         {HEAD("ASCII") GRID, "'POINT_DATA' is missing"},
         {HEAD("ASCII") GRID "CELL_DATA 12\n", "'CELL_DATA' is 12; 'DIMENSIONS' asks for 2"},
         {HEAD("ASCII") GRID "X_COORDINATES 2 float\n1 2\n", "starts nothing that is known"},
