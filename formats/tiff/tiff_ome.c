@@ -240,15 +240,15 @@ static bool is_named(const cwi_tiff_facts *facts, const char *name)
     return false;
 }
 
-/* Keeps the name of an image, else its identifier. */
+/* Keeps the name of an image, else its number from 1 on. */
 static void add_image(parsing *p, attributes a)
 {
-    const char *name = find_attribute(a, "Name"), *id = find_attribute(a, "ID");
+    const char *name = find_attribute(a, "Name");
     const size_t used = strlen(p->facts->names), left = sizeof p->facts->names - used;
-    char number[24];
-    snprintf(number, sizeof number, "%zu", p->images);
+    char number[32];
+    snprintf(number, sizeof number, "image %zu", p->images);
     if (!name || !*name || strchr(name, '\n') || is_named(p->facts, name))
-        name = id && *id && !strchr(id, '\n') && !is_named(p->facts, id) ? id : number;
+        name = number;
     if (strlen(name) + 2 < left)
         snprintf(p->facts->names + used, left, "%s\n", name);
     p->facts->image_count++;

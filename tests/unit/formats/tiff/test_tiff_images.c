@@ -144,6 +144,12 @@ static void ome_may_have_several_images(void **state)
     save_images(FIRST SECOND("7"));
     assert_fails(read_with("a.ome.tif", (cw_read_desc){.array = "small"}, &v, &err),
                  CW_ERR_FORMAT, "OME-XML", err);
+    save_images("<OME><Image ID=\"Image:0\"><Pixels DimensionOrder=\"XYZCT\" SizeX=\"4\" "
+                "SizeY=\"3\" SizeZ=\"2\" SizeC=\"1\" SizeT=\"1\"><TiffData IFD=\"0\" "
+                "PlaneCount=\"2\"/></Pixels></Image><Image ID=\"Image:1\" Name=\"\"/></OME>");
+    read_good("a.ome.tif", &v);
+    assert_string_equal(notes, "the array 'image 1' is taken; desc->array takes 'image 2'\n");
+    cw_volume_free(&v);
     save_slice("plain.tif", 1);
     assert_fails(read_with("plain.tif", (cw_read_desc){.array = "a"}, &v, &err),
                  CW_ERR_ARGUMENT, "there is no image 'a'; the file has 0", err);
