@@ -63,6 +63,8 @@ static void say_what_was_found(const cli_mesh *m)
     if (m->file.hidden)
         cli_say("%s: %zu part%s hidden by a scale of 0, as an animation does, left out",
                 m->path, m->file.hidden, m->file.hidden == 1 ? "" : "s");
+    if (*m->file.left_out)
+        cli_say("%s: left out, because a mesh cannot hold them: %s", m->path, m->file.left_out);
     say_left_out(m, m->file.supports, m->file.support_triangles, "for support");
     say_left_out(m, m->file.others, m->file.other_triangles, "of type 'other'");
 }

@@ -370,6 +370,8 @@ typedef struct cw_mesh_file {
     char fault[160]; /* of glTF: a value beyond its range, or bounds that are not those of the
                         positions, neither of which changes the mesh; "": none found */
     size_t crossing; /* of the polygons: those that cross themselves, whose triangles overlap */
+    char left_out[128]; /* what else the file has and the mesh has not, by name: "textures, texture
+                           coordinates"; "": nothing that is known */
 } cw_mesh_file;
 
 /* Reads a mesh: all parts of the file, merged, in LPS millimetres.
@@ -680,8 +682,9 @@ typedef enum cw_keeps {
     CW_KEEPS_LABELS = 32,
     CW_KEEPS_AFFINE = 64,
     CW_KEEPS_PARTS = 128,      /* several meshes, with names */
-    CW_KEEPS_ATTRIBUTES = 256, /* those of cw_mesh.attributes: no format so far */
-    CW_KEEPS_ALL = 511
+    CW_KEEPS_ATTRIBUTES = 256, /* those of cw_mesh.attributes but CW_FACE_COLORS: no format so far */
+    CW_KEEPS_FACE_COLORS = 512, /* CW_FACE_COLORS */
+    CW_KEEPS_ALL = 1023
 } cw_keeps;
 
 /* A format that this build or another one reads or writes. */
