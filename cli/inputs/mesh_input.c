@@ -162,6 +162,8 @@ void cli_json_mesh_file(cli_json *j, const char *key, const cli_mesh *mesh)
     }
     if (axes->y_up)
         cli_json_text(j, "up", "y");
+    if (*mesh->file.left_out)
+        cli_json_text(j, "left_out", mesh->file.left_out);
     if (SHA256File(mesh->path, sum))
         cli_json_text(j, "sha256", sum);
     cli_json_close(j, '}');

@@ -56,10 +56,11 @@ typedef struct cwi_3mf {
                                points */
     size_t point_color_capacity, point_color_count;
     bool mixed_colors; /* some point has two colours: then triangles keep theirs */
-    uint32_t *face_colors; /* index of a colour of each triangle, at its first corner; as above */
+    uint32_t
+        *face_colors; /* index of a colour of each triangle, at its first corner; as above */
     size_t face_color_capacity, face_color_count;
-    bool is_graded; /* some triangle has several colours */
-    uint32_t *colors;  /* 0xRRGGBBAA */
+    bool is_graded;   /* some triangle has several colours */
+    uint32_t *colors; /* 0xRRGGBBAA */
     size_t color_count, color_capacity;
     cwi_3mf_object *objects;
     size_t object_count, object_capacity;

@@ -23,8 +23,8 @@ typedef struct cwi_gltf_plan {
     size_t block_count, block_capacity;
     unsigned char *keys; /* of the animation, at the end of the buffer; NULL: none */
     size_t keys_size;
-    uint16_t linear[256];   /* linear values of sRGB bytes, in 16 bits */
-    bool fits_byte[256];    /* 8 bits of linear light give the sRGB byte back */
+    uint16_t linear[256]; /* linear values of sRGB bytes, in 16 bits */
+    bool fits_byte[256];  /* 8 bits of linear light give the sRGB byte back */
 } cwi_gltf_plan;
 
 /* Plans a file as out->desc requests.

@@ -316,7 +316,8 @@ static cw_status build_scene(cwi_gltf_reader *r, cw_mesh *mesh, cw_mesh_file *me
 static cw_status read_scene(cwi_mesh_input *in, bool binary, cw_mesh *mesh,
                             cw_mesh_file *metadata, cw_error *err)
 {
-    cwi_gltf_reader r = {.in = in, .build = {.in = in}, .materials = {.in = in}, .bytes = {.in = &in->file}};
+    cwi_gltf_reader r = {
+        .in = in, .build = {.in = in}, .materials = {.in = in}, .bytes = {.in = &in->file}};
     uint64_t json = 0, json_size = in->file.size;
     r.unpacker.desc = &in->desc;
     r.bytes.unpacker = &r.unpacker;

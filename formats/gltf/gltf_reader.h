@@ -26,10 +26,10 @@ typedef struct cwi_gltf_reader {
     bool shifted; /* every instance is moved by the mesh's origin, and nothing else */
     uint64_t max; /* maximum of vertices, and of triangles, that may be drawn */
     cwi_mesh_build build;
-    float *normals; /* room for one per point; NULL: none so far */
-    uint8_t *colors;                /* of vertices, where a primitive has COLOR_0 */
-    cwi_face_colors materials;      /* colours of triangles by their materials */
-    bool any_base;                               /* some material has a base colour that counts */
+    float *normals;            /* room for one per point; NULL: none so far */
+    uint8_t *colors;           /* of vertices, where a primitive has COLOR_0 */
+    cwi_face_colors materials; /* colours of triangles by their materials */
+    bool any_base;             /* some material has a base colour that counts */
     bool has_colors, has_texture, has_texcoords; /* of what was drawn */
     size_t normal_capacity, color_capacity;
     bool no_normals; /* some primitive has none: then none are kept */

@@ -58,7 +58,7 @@ typedef struct cwi_gltf_primitive {
 
 typedef struct cwi_gltf_material {
     double base[4];   /* linear light and opacity */
-    bool is_plain;    /* the base colour says nothing: white, or the grey of our writer */
+    bool is_plain;    /* the base colour says nothing: white, or 0.8 of it */
     bool has_texture; /* of the base colour */
 } cwi_gltf_material;
 
@@ -81,7 +81,8 @@ typedef struct cwi_gltf_node {
     bool has_color;
     uint32_t label, layer;
     uint8_t color[4];
-    char *codes[CWI_GLTF_CODES]; /* category and type: scheme, value and meaning of each; or NULL */
+    char *codes
+        [CWI_GLTF_CODES]; /* category and type: scheme, value and meaning of each; or NULL */
 } cwi_gltf_node;
 
 /* A zeroed scene is empty. */
@@ -124,8 +125,7 @@ CW_NODISCARD cw_status cwi_gltf_check_look(const char *json, size_t size, cw_err
  * that Draco compressed have no view. MSFT_lod becomes CWI_GLTF_HIDDEN_LOD, since a library may
  * refuse what is no list of levels. keeps_look: "materials" stay. "buffers" becomes "extras", which only describe: only
  * cwi_gltf_load() reads the bytes of buffers. */
-CW_NODISCARD cw_status cwi_gltf_blind(char *json, size_t size, bool keeps_look,
-                                      cw_error *err);
+CW_NODISCARD cw_status cwi_gltf_blind(char *json, size_t size, bool keeps_look, cw_error *err);
 
 /* The place of the buffers' bytes. */
 typedef struct cwi_gltf_bytes {

@@ -206,7 +206,7 @@ cw_status copy_meshes(const tinygltf::Model &model, cwi_gltf_scene &scene, cw_er
     return CW_OK;
 }
 
-// Copies the base colours of materials. Grey of the name "surface" is our writer's for none.
+// Copies the base colours of materials. White is that of none, and this grey that of our writer and others.
 cw_status copy_materials(const tinygltf::Model &model, cwi_gltf_scene &scene, cw_error *err)
 {
     const cw_status st =
@@ -217,8 +217,7 @@ cw_status copy_materials(const tinygltf::Model &model, cwi_gltf_scene &scene, cw
         const std::vector<double> white(4, 1.0), grey = {0.8, 0.8, 0.8, 1.0};
         const std::vector<double> color = base.size() == 4 ? base : white;
         std::copy(color.begin(), color.end(), scene.materials[i].base);
-        scene.materials[i].is_plain =
-            color == white || (color == grey && from.name == "surface");
+        scene.materials[i].is_plain = color == white || color == grey;
         scene.materials[i].has_texture = from.pbrMetallicRoughness.baseColorTexture.index >= 0;
     }
     return st;
@@ -272,8 +271,8 @@ cw_status copy_label(const tinygltf::Value &extras, cwi_gltf_node &node, cw_erro
         return CW_OK;
     node.has_label = true;
     node.label = uint32_t(value);
-    node.layer = layer.IsNumber() && number_of(layer) <= UINT32_MAX ? uint32_t(number_of(layer))
-                                                                    : 0;
+    node.layer =
+        layer.IsNumber() && number_of(layer) <= UINT32_MAX ? uint32_t(number_of(layer)) : 0;
     unsigned rgb[3];
     const std::string hex = color.IsString() ? color.Get<std::string>() : "";
     if (hex.size() == 7 &&

@@ -118,11 +118,13 @@ static unsigned arrays_of_label(const cw_label *label)
 }
 
 /* Finds the one colour of a part: that of its label, unless its vertices have colours; else the colour of
- * all its vertices. */
+ * all its vertices. White of vertices stays theirs, since a white material is no colour to readers. */
 static void choose_color(cwi_part *part)
 {
+    static const uint8_t white[4] = {255, 255, 255, 255};
     const cw_label *label = part->label;
-    if (part->mesh.colors && cwi_mesh_one_color(&part->mesh, part->color)) {
+    if (cwi_mesh_one_color(&part->mesh, part->color) &&
+        memcmp(part->color, white, sizeof white) != 0) {
         part->has_color = true;
         part->mesh.colors = NULL;
     } else if (!part->mesh.colors && label && label->has_color) {

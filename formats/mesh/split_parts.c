@@ -215,8 +215,8 @@ cw_status cwi_parts_label(const cwi_mesh_input *in, cw_mesh *mesh, cw_error *err
     return CW_OK;
 }
 
-cw_status cwi_parts_split(cwi_mesh_input *in, cw_mesh *mesh, cw_part **parts,
-                          size_t *count, cw_error *err)
+cw_status cwi_parts_split(cwi_mesh_input *in, cw_mesh *mesh, cw_part **parts, size_t *count,
+                          cw_error *err)
 {
     split s = {
         .whole = mesh, .marks = &in->marks, .run_count = in->marks.count ? in->marks.count : 1};

@@ -138,7 +138,7 @@ const cwi_obj_material *cwi_obj_find_material(const cwi_obj_materials *m, const 
             high = middle;
     }
     return low < m->count && strcmp(m->names + m->items[low].name, name) == 0 ? &m->items[low]
-                                                                               : NULL;
+                                                                              : NULL;
 }
 
 void cwi_obj_materials_free(cwi_obj_materials *m)

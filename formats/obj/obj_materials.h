@@ -6,7 +6,7 @@
 
 /* A material: its diffuse colour and opacity. */
 typedef struct cwi_obj_material {
-    size_t name; /* start of its name among the names */
+    size_t name;      /* start of its name among the names */
     const char *text; /* the same, while sorting */
     size_t order;
     uint8_t color[4]; /* sRGB, as other programs write it */

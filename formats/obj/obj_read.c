@@ -325,7 +325,8 @@ cw_status cwi_obj_read(cwi_mesh_input *in, cw_mesh *mesh, cw_mesh_file *metadata
         st = keep_colors(&o, mesh, err);
     cwi_say_left_out(metadata, o.has_texture, "textures");
     cwi_say_left_out(metadata, o.has_texcoords, "texture coordinates");
-    cwi_say_left_out(metadata, o.materials.is_missing, "materials of a missing or damaged file");
+    cwi_say_left_out(metadata, o.materials.is_missing,
+                     "materials of a missing or damaged file");
     cwi_scan_close(&s);
     free_obj(&o);
     return st;

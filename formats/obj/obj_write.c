@@ -70,9 +70,9 @@ static bool has_material(const cwi_part *part)
 static void print_material(const cwi_part *part, char text[MATERIAL_BYTES])
 {
     const cw_label *label = part->label;
-    const int length = label ? snprintf(text, MATERIAL_BYTES, "%s_%u", part->name, label->value)
-                             : snprintf(text, MATERIAL_BYTES, "%s_%08X", part->name,
-                                        pack_color(part->color));
+    const int length =
+        label ? snprintf(text, MATERIAL_BYTES, "%s_%u", part->name, label->value)
+              : snprintf(text, MATERIAL_BYTES, "%s_%08X", part->name, pack_color(part->color));
     for (char *c = text; *c; c++)
         *c = *c == ' ' ? '_' : *c;
     if (label && label->layer > 0)
@@ -110,8 +110,8 @@ static cw_status write_face_materials(const cwi_parts *parts, cwi_mesh_output *o
     uint32_t *colors = cwi_alloc_array((size_t)parts->triangles, sizeof *colors);
     cw_status st = colors ? CW_OK : cwi_fail_memory(err);
     for (size_t i = 0; i < parts->count && st == CW_OK; i++)
-        for (size_t t = 0; parts->items[i].face_colors && t < parts->items[i].mesh.triangle_count;
-             t++)
+        for (size_t t = 0;
+             parts->items[i].face_colors && t < parts->items[i].mesh.triangle_count; t++)
             colors[count++] = pack_color(parts->items[i].face_colors + 4 * t);
     if (count)
         qsort(colors, count, sizeof *colors, compare_colors);
