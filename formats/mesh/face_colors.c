@@ -2,6 +2,7 @@
 #include "formats/mesh/face_colors.h"
 
 #include "core/base/memory.h"
+#include "core/base/status.h"
 
 #include <string.h>
 
@@ -19,15 +20,15 @@ cw_status cwi_color_faces(cwi_face_colors *f, size_t end, const uint8_t color[4]
     return CW_OK;
 }
 
-/* Copies the colours to the vertices. Returns false if a vertex has two, or there is no memory. */
-static bool color_vertices(const cwi_face_colors *f, cw_mesh *mesh)
+/* Copies the colours to the vertices, unless one gets two: then the mesh stays without. */
+static cw_status color_vertices(const cwi_face_colors *f, cw_mesh *mesh, cw_error *err)
 {
     bool *seen = cwi_alloc_zeroed(mesh->vertex_count, sizeof *seen), alike = true;
     uint8_t *colors = cwi_alloc_array(mesh->vertex_count, 4);
-    if (colors)
+    const bool has_memory = seen && colors;
+    if (has_memory)
         memset(colors, 255, 4 * mesh->vertex_count);
-    alike = seen && colors;
-    for (size_t i = 0; i < 3 * mesh->triangle_count && alike; i++) {
+    for (size_t i = 0; i < 3 * mesh->triangle_count && has_memory && alike; i++) {
         const size_t v = mesh->triangles[i];
         const uint8_t *color = f->colors + 4 * (i / 3);
         alike = !seen[v] || memcmp(colors + 4 * v, color, 4) == 0;
@@ -35,11 +36,11 @@ static bool color_vertices(const cwi_face_colors *f, cw_mesh *mesh)
         seen[v] = true;
     }
     cwi_free(seen);
-    if (alike)
+    if (has_memory && alike)
         mesh->colors = colors;
     else
         cwi_free(colors);
-    return alike;
+    return has_memory ? CW_OK : cwi_fail_memory(err);
 }
 
 cw_status cwi_color_mesh(cwi_face_colors *f, bool spread, cw_mesh *mesh, cw_error *err)
@@ -53,7 +54,10 @@ cw_status cwi_color_mesh(cwi_face_colors *f, bool spread, cw_mesh *mesh, cw_erro
     if (!f->colors || !mesh->triangle_count)
         return CW_OK;
     cw_status st = cwi_color_faces(f, mesh->triangle_count, white, err);
-    if (st != CW_OK || (spread && !mesh->colors && color_vertices(f, mesh)))
+    const bool tries = st == CW_OK && spread && !mesh->colors;
+    if (tries)
+        st = color_vertices(f, mesh, err);
+    if (st != CW_OK || (tries && mesh->colors))
         return st;
     st = cw_mesh_attribute_add(mesh, &like, &row, err);
     if (st == CW_OK)

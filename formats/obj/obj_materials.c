@@ -107,8 +107,9 @@ cw_status cwi_obj_read_materials(cwi_obj_materials *m, const char *name, cw_erro
     cwi_input file = m->in->file;
     cw_status st = CW_OK;
     int fd = -1;
-    const bool opens = m->files++ < MAX_FILES &&
-                       cwi_input_open_side(&m->in->file, name, &fd, &file.size, NULL) == CW_OK;
+    if (m->files++ < MAX_FILES)
+        st = cwi_input_open_side(&m->in->file, name, &fd, &file.size, err);
+    const bool opens = st == CW_OK && fd >= 0;
     file.fd = fd;
     if (opens && file.size <= MAX_BYTES)
         st = read_lines(m, &file, err);
@@ -116,7 +117,7 @@ cw_status cwi_obj_read_materials(cwi_obj_materials *m, const char *name, cw_erro
         m->is_missing = true;
     if (opens)
         close(fd);
-    if (st == CW_ERR_FORMAT || st == CW_ERR_IO) {
+    if (st == CW_ERR_FORMAT || st == CW_ERR_IO || st == CW_ERR_UNSAFE) {
         m->is_missing = true;
         st = CW_OK;
     }

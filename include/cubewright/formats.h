@@ -692,7 +692,8 @@ typedef enum cw_keeps {
     CW_KEEPS_ATTRIBUTES =
         256, /* those of cw_mesh.attributes but CW_FACE_COLORS: no format so far */
     CW_KEEPS_FACE_COLORS = 512, /* CW_FACE_COLORS */
-    CW_KEEPS_ALL = 1023
+    CW_KEEPS_OPACITY = 1024,    /* of vertices, beside their colours */
+    CW_KEEPS_ALL = 2047
 } cw_keeps;
 
 /* A format that this build or another one reads or writes. */

@@ -248,7 +248,8 @@ class cw_keeps(enum.IntEnum):
     CW_KEEPS_PARTS = 128
     CW_KEEPS_ATTRIBUTES = 256
     CW_KEEPS_FACE_COLORS = 512
-    CW_KEEPS_ALL = 1023
+    CW_KEEPS_OPACITY = 1024
+    CW_KEEPS_ALL = 2047
 
 
 class cw_mode(enum.IntEnum):

@@ -383,6 +383,52 @@ static void ply_states_colours_in_several_ways(void **state)
         }
 }
 
+static void memory_may_run_out_anywhere(void **state)
+{
+    (void)state;
+    static const char *const names[] = {"a.ply", "a.off", "a.obj", "a.3mf", "a.vtp"};
+    for (size_t n = 0; n < sizeof names / sizeof *names; n++) {
+        cw_mesh mesh;
+        cw_error err = {0};
+        test_make_cube(&mesh);
+        add_face_colors(&mesh);
+        assert_ok(cw_mesh_write(test_path(names[n]), &mesh, NULL, &err), err);
+        check_starved_mesh_reads(names[n]);
+        cw_mesh_free(&mesh);
+    }
+    write_file("v.obj", "v 0 0 0 1 0 0\nv 1 0 0 1 0 0\nv 0 1 0 0 0 1\n" FACE);
+    check_starved_mesh_reads("v.obj");
+    write_file("m.mtl", "newmtl blue\nKd 0 0 1\n");
+    write_file("m.obj", "mtllib m.mtl\n" SQUARE "usemtl blue\nf 1 2 3\nf 1 3 4\n");
+    check_starved_mesh_reads("m.obj");
+    if (!cwi_module_present("gltf"))
+        return;
+    write_file("m.gltf", GLTF_TEXT(PRIMITIVE(1, "") "," PRIMITIVE(2, ""), "{\"mesh\":0}",
+                                   GLTF_MATERIALS));
+    check_starved_mesh_reads("m.gltf");
+}
+
+/* OBJ has no opacity of vertices; a part of one colour has it in its material. */
+static void opacity_that_is_lost_is_told(void **state)
+{
+    (void)state;
+    cw_mesh mesh;
+    cw_error err = {0};
+    cw_write_loss loss;
+    test_make_cube(&mesh);
+    mesh.colors = malloc(4 * mesh.vertex_count);
+    assert_non_null(mesh.colors);
+    memset(mesh.colors, 99, 4 * mesh.vertex_count);
+    assert_ok(cw_mesh_write_loss("a.obj", &mesh, NULL, &loss, &err), err);
+    assert_int_equal(loss.dropped, 0);
+    mesh.colors[0] = 98;
+    assert_ok(cw_mesh_write_loss("a.obj", &mesh, NULL, &loss, &err), err);
+    assert_int_equal(loss.dropped, CW_KEEPS_OPACITY);
+    assert_ok(cw_mesh_write_loss("a.ply", &mesh, NULL, &loss, &err), err);
+    assert_int_equal(loss.dropped, 0);
+    cw_mesh_free(&mesh);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -396,6 +442,8 @@ int main(void)
         cmocka_unit_test(materials_of_gltf_colour_faces_or_vertices),
         cmocka_unit_test(materials_of_gltf_that_are_wrong_change_no_shape),
         cmocka_unit_test(ply_states_colours_in_several_ways),
+        cmocka_unit_test(memory_may_run_out_anywhere),
+        cmocka_unit_test(opacity_that_is_lost_is_told),
     };
     return cmocka_run_group_tests(tests, test_folder_make, test_folder_remove);
 }
