@@ -77,10 +77,11 @@ static cw_status read_file(const char *path, cwi_mesh_input *in, cw_mesh *mesh,
     return st;
 }
 
-static void free_marks(cwi_marks *marks)
+static void free_marks(cwi_mesh_input *in)
 {
-    cwi_free(marks->items);
-    cwi_free(marks->names);
+    cwi_free(in->marks.items);
+    cwi_free(in->marks.names);
+    cw_label_table_free(&in->labels);
 }
 
 cw_status cw_mesh_read(const char *path, const cw_mesh_read_desc *desc, cw_mesh *mesh,
@@ -91,7 +92,9 @@ cw_status cw_mesh_read(const char *path, const cw_mesh_read_desc *desc, cw_mesh 
     cwi_mesh_input in = {.desc = resolve_desc(desc)};
     cw_mesh_file metadata = {0};
     cw_status st = read_file(path, &in, mesh, &metadata, err);
-    free_marks(&in.marks);
+    if (st == CW_OK)
+        st = cwi_parts_label(&in, mesh, err);
+    free_marks(&in);
     if (file)
         *file = metadata;
     return st == CW_OK ? CW_OK : cwi_fail_in(err, st, path);
@@ -111,7 +114,7 @@ cw_status cw_parts_read(const char *path, const cw_mesh_read_desc *desc, cw_part
     if (st == CW_OK)
         st = cwi_parts_split(&in, &mesh, parts, count, err);
     cw_mesh_free(&mesh);
-    free_marks(&in.marks);
+    free_marks(&in);
     if (file)
         *file = metadata;
     return st == CW_OK ? CW_OK : cwi_fail_in(err, st, path);

@@ -358,6 +358,18 @@ static bool is_exact(const cwi_part *part, const cw_write_desc *d)
     return d->local && origin[0] == 0 && origin[1] == 0 && origin[2] == 0;
 }
 
+/* Returns true if a vertex of parts as they are written is not opaque. */
+static bool is_translucent(const cwi_parts *placed)
+{
+    for (size_t i = 0; i < placed->count; i++) {
+        const cw_mesh *m = &placed->items[i].mesh;
+        for (size_t v = 0; m->colors && v < m->vertex_count; v++)
+            if (m->colors[4 * v + 3] != 255)
+                return true;
+    }
+    return false;
+}
+
 static unsigned find_dropped(const cw_part *parts, size_t count, const cwi_parts *placed,
                              unsigned keeps, const cw_write_loss *loss)
 {
@@ -367,6 +379,8 @@ static unsigned find_dropped(const cw_part *parts, size_t count, const cwi_parts
         had |= parts[i].spool ? cwi_spool_arrays(parts[i].spool) : cwi_arrays_of(parts[i].mesh);
     for (size_t i = 0; i < placed->count; i++)
         has |= placed->items[i].arrays & ~(unsigned)CW_KEEPS_AFFINE;
+    if (!(keeps & CW_KEEPS_OPACITY) && is_translucent(placed))
+        had |= CW_KEEPS_OPACITY;
     if (loss->merged_vertices || loss->flat_triangles)
         had |= CW_KEEPS_PLACES;
     return had & ~has;
@@ -380,6 +394,8 @@ static void name_attributes(const cw_part *parts, size_t count, char *text, size
         for (size_t n = 0; parts[i].mesh && n < parts[i].mesh->attribute_count; n++) {
             const char *name = parts[i].mesh->attributes[n].name;
             size_t first = 0;
+            if (strcmp(name, CW_FACE_COLORS) == 0)
+                continue;
             while (!parts[first].mesh || !cw_mesh_attribute_find(parts[first].mesh, name))
                 first++;
             if (first == i && used < size)

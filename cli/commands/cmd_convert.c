@@ -120,8 +120,9 @@ static cw_status convert_parts(cli_mesh_run *r, const cw_part *parts, size_t cou
     return st;
 }
 
-/* Splits a mesh that is one part into its solids. */
-static cw_status convert_solids(cli_mesh_run *r, const cw_mesh *mesh, cw_error *err)
+/* Splits a mesh that is one part into its solids, each with its label. */
+static cw_status convert_solids(cli_mesh_run *r, const cw_mesh *mesh, const cw_label *label,
+                                cw_error *err)
 {
     cw_mesh *solids = NULL;
     size_t count = 0;
@@ -130,7 +131,7 @@ static cw_status convert_solids(cli_mesh_run *r, const cw_mesh *mesh, cw_error *
     if (st == CW_OK && !parts)
         st = cwi_fail(err, CW_ERR_NO_MEMORY, "out of memory");
     for (size_t n = 0; n < count && parts; n++)
-        parts[n].mesh = &solids[n];
+        parts[n] = (cw_part){.mesh = &solids[n], .label = label};
     if (st == CW_OK)
         st = convert_parts(r, parts, count, err);
     free(parts);
@@ -146,7 +147,8 @@ static cw_status convert_mesh(cli_mesh_run *r, cw_error *err)
     if (args_of(r)->split && m->part_count > 1)
         return convert_parts(r, m->parts, m->part_count, err);
     if (args_of(r)->split)
-        return convert_solids(r, m->parts ? m->parts[0].mesh : &m->mesh, err);
+        return convert_solids(r, m->parts ? m->parts[0].mesh : &m->mesh,
+                              m->parts ? m->parts[0].label : NULL, err);
     return m->parts ? convert_file(r, 0, m->parts, m->part_count, err)
                     : convert_file(r, 0, &(cw_part){.mesh = &m->mesh}, 1, err);
 }

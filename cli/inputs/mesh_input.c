@@ -85,6 +85,8 @@ static void say_what_was_found(const cli_mesh *m)
         cli_say(
             "%s: modifiers of the slicer, with %s triangles, left out: they are no parts of the print",
             m->path, cli_count(m->file.modifier_triangles));
+    if (*m->file.left_out)
+        cli_say("%s: left out, because a mesh cannot hold them: %s", m->path, m->file.left_out);
     say_left_out(m, m->file.supports, m->file.support_triangles, "for support");
     say_left_out(m, m->file.others, m->file.other_triangles, "of type 'other'");
 }
@@ -182,6 +184,8 @@ void cli_json_mesh_file(cli_json *j, const char *key, const cli_mesh *mesh)
     }
     if (axes->y_up)
         cli_json_text(j, "up", "y");
+    if (*mesh->file.left_out)
+        cli_json_text(j, "left_out", mesh->file.left_out);
     if (SHA256File(mesh->path, sum))
         cli_json_text(j, "sha256", sum);
     cli_json_close(j, '}');

@@ -53,7 +53,8 @@ static cw_status take_parts(cli_pieces *p, const cli_mesh *m, bool weld, cw_erro
         size_t merged = 0;
         cli_piece *piece = &p->piece[p->count];
         *piece = (cli_piece){.input = m->parts ? *m->parts[n].mesh : m->mesh,
-                             .name = m->parts ? m->parts[n].name : NULL};
+                             .name = m->parts ? m->parts[n].name : NULL,
+                             .label = m->parts ? m->parts[n].label : NULL};
         if (weld)
             st = cw_mesh_weld(&piece->input, &merged, err);
         p->merged += merged;
@@ -181,7 +182,8 @@ cw_status cli_list_parts(const cli_pieces *p, cw_part **parts, cw_error *err)
     if (!*parts)
         return cwi_fail_memory(err);
     for (size_t n = 0; n < p->count; n++)
-        (*parts)[n] = (cw_part){.mesh = &p->piece[n].out, .name = p->piece[n].name};
+        (*parts)[n] = (cw_part){
+            .mesh = &p->piece[n].out, .name = p->piece[n].name, .label = p->piece[n].label};
     return CW_OK;
 }
 

@@ -9,8 +9,9 @@
 typedef struct cli_piece {
     cw_mesh input; /* its arrays are those of the cli_mesh, welded */
     const char *name;
-    cw_quality before; /* of the input */
-    cw_mesh out;       /* owned */
+    const cw_label *label; /* that of the part; borrowed */
+    cw_quality before;     /* of the input */
+    cw_mesh out;           /* owned */
 } cli_piece;
 
 typedef struct cli_pieces {

@@ -73,6 +73,18 @@ size_t cwi_attribute_elements(const cw_mesh *mesh, cw_on on)
                                    : 1;
 }
 
+bool cwi_mesh_one_color(const cw_mesh *mesh, uint8_t color[4])
+{
+    const uint8_t *colors = mesh->colors;
+    if (!colors || !mesh->vertex_count)
+        return false;
+    /* every colour is that before it */
+    if (mesh->vertex_count > 1 && memcmp(colors, colors + 4, 4 * (mesh->vertex_count - 1)) != 0)
+        return false;
+    memcpy(color, colors, 4);
+    return true;
+}
+
 bool cwi_attributes_any(const cw_mesh *mesh, unsigned on)
 {
     for (size_t n = 0; n < cwi_attribute_count(mesh); n++) {

@@ -20,6 +20,9 @@ size_t cwi_attribute_elements(const cw_mesh *mesh, cw_on on);
 /* Returns true if the mesh has an attribute on one of the kinds: bits 1 << cw_on. */
 bool cwi_attributes_any(const cw_mesh *mesh, unsigned on);
 
+/* Returns true if all vertices have the same colour, which is then copied. */
+bool cwi_mesh_one_color(const cw_mesh *mesh, uint8_t color[4]);
+
 /* Gives a mesh the attributes of another, for its own numbers of vertices and triangles: all zero, but
  * those of parts are copied. The mesh has none before, and is emptied on failure. */
 CW_NODISCARD cw_status cwi_attributes_alloc(const cw_mesh *like, cw_mesh *mesh, cw_error *err);

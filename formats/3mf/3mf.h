@@ -60,8 +60,12 @@ typedef struct cwi_3mf {
     uint32_t *point_colors; /* index of a colour, or cwi_3mf_none; for the first color_count
                                points */
     size_t point_color_capacity, point_color_count;
-    bool mixed_colors; /* some point has two colours: then none are kept */
-    uint32_t *colors;  /* 0xRRGGBBAA */
+    bool mixed_colors; /* some point has two colours: then triangles keep theirs */
+    uint32_t
+        *face_colors; /* index of a colour of each triangle, at its first corner; as above */
+    size_t face_color_capacity, face_color_count;
+    bool is_graded;   /* some triangle has several colours */
+    uint32_t *colors; /* 0xRRGGBBAA */
     size_t color_count, color_capacity;
     cwi_3mf_object *objects;
     size_t object_count, object_capacity;

@@ -3,6 +3,7 @@
 #include "core/base/status.h"
 #include "core/geometry/affine.h"
 #include "formats/3mf/3mf.h"
+#include "formats/mesh/face_colors.h"
 
 #include <math.h>
 #include <string.h>
@@ -194,24 +195,39 @@ static void move_object(cwi_mesh_build *b, const cwi_3mf_object *o, const instan
         swap_corners(b->triangles + 3 * t);
 }
 
-/* Adds a copy of the object's points and triangles, and of the points' colours. */
-static cw_status copy_object(cwi_3mf *m, cwi_mesh_build *to, uint32_t **colors,
-                             size_t *color_capacity, const cwi_3mf_object *o, cw_error *err)
+/* Colours of the copies; NULL: none. */
+typedef struct copied_colors {
+    uint32_t *points, *faces;
+    size_t point_capacity, face_capacity;
+} copied_colors;
+
+/* Adds a copy of the object's points and triangles, and of their colours. */
+static cw_status copy_object(cwi_3mf *m, cwi_mesh_build *to, copied_colors *colors,
+                             const cwi_3mf_object *o, cw_error *err)
 {
     const size_t first = to->point_count, count = o->end_point - o->first_point;
     const size_t triangles = o->end_triangle - o->first_triangle;
     cw_status st = cwi_build_reserve(to, (uint64_t)first + count,
                                      (uint64_t)to->triangle_count + triangles, err);
     if (st == CW_OK && m->point_colors)
-        st = cwi_mesh_grow(m->in, colors, color_capacity, first + count, sizeof **colors, err);
+        st = cwi_mesh_grow(m->in, &colors->points, &colors->point_capacity, first + count,
+                           sizeof *colors->points, err);
+    if (st == CW_OK && m->face_colors)
+        st = cwi_mesh_grow(m->in, &colors->faces, &colors->face_capacity,
+                           to->triangle_count + triangles, sizeof *colors->faces, err);
     if (st != CW_OK)
         return st;
     memcpy(to->points + 3 * first, m->build.points + 3 * o->first_point,
            3 * count * sizeof *to->points);
     for (size_t v = 0; v < count && m->point_colors; v++) {
         const size_t from = o->first_point + v;
-        (*colors)[first + v] =
+        colors->points[first + v] =
             from < m->point_color_count ? m->point_colors[from] : cwi_3mf_none;
+    }
+    for (size_t t = 0; t < triangles && m->face_colors; t++) {
+        const size_t from = o->first_triangle + t;
+        colors->faces[to->triangle_count + t] =
+            from < m->face_color_count ? m->face_colors[from] : cwi_3mf_none;
     }
     for (size_t i = 0; i < 3 * triangles; i++)
         to->triangles[3 * to->triangle_count + i] =
@@ -227,23 +243,26 @@ static cw_status copy_objects(placing *p, cw_error *err)
 {
     cwi_3mf *m = p->m;
     cwi_mesh_build to = {.in = m->in};
-    uint32_t *colors = NULL;
-    size_t color_capacity = 0;
+    copied_colors colors = {0};
     cw_status st = CW_OK;
     for (size_t i = 0; i < p->count && st == CW_OK; i++) {
         const cwi_3mf_object *o = &m->objects[p->instances[i].object];
-        st = copy_object(m, &to, &colors, &color_capacity, o, err);
+        st = copy_object(m, &to, &colors, o, err);
     }
     if (st != CW_OK) {
         cwi_build_free(&to);
-        cwi_free(colors);
+        cwi_free(colors.points);
+        cwi_free(colors.faces);
         return st;
     }
     cwi_build_free(&m->build);
     cwi_free(m->point_colors);
+    cwi_free(m->face_colors);
     m->build = to;
-    m->point_colors = colors;
-    m->point_color_count = colors ? to.point_count : 0;
+    m->point_colors = colors.points;
+    m->point_color_count = colors.points ? to.point_count : 0;
+    m->face_colors = colors.faces;
+    m->face_color_count = colors.faces ? to.triangle_count : 0;
     return CW_OK;
 }
 
@@ -271,19 +290,42 @@ static cw_status move_instances(placing *p, cw_error *err)
     return st;
 }
 
-/* Colours points without a colour white, as they are drawn. */
+static void unpack_color(const cwi_3mf *m, uint32_t index, uint8_t color[4])
+{
+    const uint32_t packed = index == cwi_3mf_none ? UINT32_MAX : m->colors[index]; /* white */
+    for (int c = 0; c < 4; c++)
+        color[c] = (uint8_t)(packed >> (24 - 8 * c));
+}
+
+/* Colours points; those without a colour are white, as they are drawn. */
 static cw_status color_points(cwi_3mf *m, size_t count, cw_error *err)
 {
     size_t capacity = 0;
     if (!m->point_colors || m->mixed_colors)
         return CW_OK;
     cw_status st = cwi_mesh_grow(m->in, &m->mesh->colors, &capacity, count, 4, err);
-    for (size_t v = 0; v < count && st == CW_OK; v++) {
-        const uint32_t index = v < m->point_color_count ? m->point_colors[v] : cwi_3mf_none;
-        const uint32_t color = index == cwi_3mf_none ? UINT32_MAX : m->colors[index];
-        for (int c = 0; c < 4; c++)
-            m->mesh->colors[4 * v + (size_t)c] = (uint8_t)(color >> (24 - 8 * c));
+    for (size_t v = 0; v < count && st == CW_OK; v++)
+        unpack_color(m, v < m->point_color_count ? m->point_colors[v] : cwi_3mf_none,
+                     m->mesh->colors + 4 * v);
+    return st;
+}
+
+/* Colours triangles where points have two colours. */
+static cw_status color_faces(cwi_3mf *m, cw_error *err)
+{
+    cwi_face_colors faces = {.in = m->in};
+    uint8_t color[4];
+    cw_status st = CW_OK;
+    if (!m->mixed_colors)
+        return CW_OK;
+    for (size_t t = 0; t < m->face_color_count && st == CW_OK; t++) {
+        unpack_color(m, m->face_colors[t], color);
+        st = cwi_color_faces(&faces, t + 1, color, err);
     }
+    if (st == CW_OK)
+        st = cwi_color_mesh(&faces, true, m->mesh, err);
+    cwi_face_colors_free(&faces);
+    cwi_say_left_out(m->metadata, m->is_graded, "gradients of colours within triangles");
     return st;
 }
 
@@ -295,7 +337,9 @@ static cw_status build_mesh(placing *p, cw_error *err)
         st = move_instances(p, err);
     if (st == CW_OK)
         st = color_points(m, m->build.point_count, err);
-    return st == CW_OK ? cwi_build_finish(&m->build, m->mesh, m->metadata, err) : st;
+    if (st == CW_OK)
+        st = cwi_build_finish(&m->build, m->mesh, m->metadata, err);
+    return st == CW_OK ? color_faces(m, err) : st;
 }
 
 cw_status cwi_3mf_place(cwi_3mf *m, cw_error *err)

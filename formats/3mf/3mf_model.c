@@ -335,7 +335,7 @@ static cw_status start_vertex(void *user, cwi_xml *x, cwi_attributes a, cw_error
 }
 
 /* Gives a point a colour, from a corner of a triangle. Once any point has two, none are
- * kept. */
+ * kept: triangles then have theirs. */
 static cw_status give_color(parsing *p, size_t point, uint32_t color, cw_error *err)
 {
     cwi_3mf *m = p->m;
@@ -353,22 +353,43 @@ static cw_status give_color(parsing *p, size_t point, uint32_t color, cw_error *
     return CW_OK;
 }
 
+/* Keeps the colour of the last triangle. Those before it that have none are marked. */
+static cw_status keep_face_color(parsing *p, const uint32_t colors[3], cw_error *err)
+{
+    cwi_3mf *m = p->m;
+    const size_t count = m->build.triangle_count;
+    if (colors[0] == cwi_3mf_none && !m->face_colors)
+        return CW_OK;
+    cw_status st = cwi_mesh_grow(m->in, &m->face_colors, &m->face_color_capacity, count,
+                                 sizeof *m->face_colors, err);
+    if (st != CW_OK)
+        return st;
+    while (m->face_color_count < count)
+        m->face_colors[m->face_color_count++] = cwi_3mf_none;
+    m->face_colors[count - 1] = colors[0];
+    for (int c = 1; c < 3 && colors[0] != cwi_3mf_none && colors[c] != cwi_3mf_none; c++)
+        m->is_graded = m->is_graded || m->colors[colors[c]] != m->colors[colors[0]];
+    return CW_OK;
+}
+
 static cw_status color_triangle(parsing *p, const char *const values[4],
                                 const size_t corners[3], cw_error *err)
 {
     static const char *const what[3] = {"'p1'", "'p2'", "'p3'"};
-    uint32_t group = p->group_id, index = 0;
+    uint32_t group = p->group_id, index = 0, colors[3];
     cw_status st = values[0] ? read_whole(p, "'pid'", values[0], &group, err) : CW_OK;
     for (int c = 0; c < 3 && st == CW_OK; c++) {
         uint32_t color = p->color;
+        colors[c] = cwi_3mf_none;
         if (values[1] && values[1 + c])
             st = read_whole(p, what[c], values[1 + c], &index, err);
         if (st == CW_OK && values[1] && group != cwi_3mf_none)
             st = find_color(p, group, index, &color, err);
         if (st == CW_OK)
             st = give_color(p, corners[c], color, err);
+        colors[c] = color;
     }
-    return st;
+    return st == CW_OK ? keep_face_color(p, colors, err) : st;
 }
 
 static cw_status start_triangle(void *user, cwi_xml *x, cwi_attributes a, cw_error *err)

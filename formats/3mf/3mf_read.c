@@ -93,6 +93,7 @@ static void free_package(cwi_3mf *m)
         cwi_free(m->models[i]);
     cwi_build_free(&m->build);
     cwi_free(m->point_colors);
+    cwi_free(m->face_colors);
     cwi_free(m->colors);
     cwi_free(m->objects);
     cwi_free(m->components);

@@ -61,16 +61,16 @@ static int compare_colors(const void *a, const void *b)
     return (*x > *y) - (*x < *y);
 }
 
-/* Lists the existing colours, each once and in order. */
-static size_t list_colors(const cw_mesh *mesh, uint32_t *colors)
+/* Lists the existing colours, each once and in order. bytes: 4 of each element */
+static size_t list_colors(const uint8_t *bytes, size_t elements, uint32_t *colors)
 {
     size_t count = 0;
-    for (size_t v = 0; v < mesh->vertex_count; v++)
-        colors[v] = pack_color(mesh->colors + 4 * v);
-    qsort(colors, mesh->vertex_count, sizeof *colors, compare_colors);
-    for (size_t v = 0; v < mesh->vertex_count; v++)
-        if (count == 0 || colors[count - 1] != colors[v])
-            colors[count++] = colors[v];
+    for (size_t i = 0; i < elements; i++)
+        colors[i] = pack_color(bytes + 4 * i);
+    qsort(colors, elements, sizeof *colors, compare_colors);
+    for (size_t i = 0; i < elements; i++)
+        if (count == 0 || colors[count - 1] != colors[i])
+            colors[count++] = colors[i];
     return count;
 }
 
@@ -83,18 +83,18 @@ static cw_status write_group(model *m, size_t id, const uint32_t *colors, size_t
     return st == CW_OK ? print_model(m, err, "</m:colorgroup>\n") : st;
 }
 
-/* Writes the group of a part's colours, and numbers its vertices by them. */
-static cw_status write_colors(model *m, const cw_mesh *mesh, size_t id, uint32_t *numbers,
-                              cw_error *err)
+/* Writes the group of the colours of a part's elements, and numbers these by them. */
+static cw_status write_colors(model *m, const uint8_t *bytes, size_t elements, size_t id,
+                              uint32_t *numbers, cw_error *err)
 {
-    uint32_t *colors = cwi_alloc_array(mesh->vertex_count, sizeof *colors);
+    uint32_t *colors = cwi_alloc_array(elements, sizeof *colors);
     if (!colors)
         return cwi_fail_memory(err);
-    const size_t count = list_colors(mesh, colors);
-    for (size_t v = 0; v < mesh->vertex_count; v++) {
-        const uint32_t color = pack_color(mesh->colors + 4 * v);
+    const size_t count = list_colors(bytes, elements, colors);
+    for (size_t i = 0; i < elements; i++) {
+        const uint32_t color = pack_color(bytes + 4 * i);
         const uint32_t *at = bsearch(&color, colors, count, sizeof color, compare_colors);
-        numbers[v] = (uint32_t)(at - colors);
+        numbers[i] = (uint32_t)(at - colors);
     }
     cw_status st = write_group(m, id, colors, count, err);
     cwi_free(colors);
@@ -124,8 +124,9 @@ static unsigned char *encode_triangle(const cwi_part *part, size_t t, unsigned c
         to = cwi_put_integer(cwi_put_text(to, vertices[c]), v[c]);
     if (part->numbers)
         to = cwi_put_integer(cwi_put_text(to, "\" pid=\""), part->group);
-    for (int c = 0; c < 3 && part->numbers; c++)
-        to = cwi_put_integer(cwi_put_text(to, colors[c]), part->numbers[v[c]]);
+    for (int c = 0; c < (part->face_colors ? 1 : 3) && part->numbers; c++)
+        to = cwi_put_integer(cwi_put_text(to, colors[c]),
+                             part->numbers[part->face_colors ? t : v[c]]);
     return cwi_put_text(to, "\"/>\n");
 }
 
@@ -147,15 +148,15 @@ static size_t object_id(size_t part)
     return 2 * part + 2;
 }
 
-/* Writes the group of a label's one colour. */
-static cw_status write_label_color(model *m, const cw_label *label, size_t id, cw_error *err)
+/* Writes the group of the one colour that a part has. */
+static cw_status write_one_color(model *m, const cwi_part *part, size_t id, cw_error *err)
 {
-    const uint32_t color = pack_color(label->color);
+    const uint32_t color = pack_color(part->color);
     return write_group(m, id, &color, 1, err);
 }
 
 /* Writes an object. Vertices stay where they are: the build item holds the origin. An object
- * whose vertices have colours must name one for itself, too. */
+ * whose triangles or vertices have colours must name one for itself, too. */
 static cw_status write_object(model *m, const cwi_part *given, size_t id, cw_error *err)
 {
     char name[CWI_XML_BYTES(CWI_NAME_BYTES)], group[64] = "";
@@ -163,15 +164,17 @@ static cw_status write_object(model *m, const cwi_part *given, size_t id, cw_err
     uint32_t *numbers = NULL;
     cw_status st = CW_OK;
     memset(part.mesh.origin, 0, sizeof part.mesh.origin);
-    const bool has_color = part.label && part.label->has_color;
-    if (part.mesh.colors || has_color)
+    const uint8_t *colors = part.face_colors ? part.face_colors : part.mesh.colors;
+    const size_t count = part.face_colors ? part.mesh.triangle_count : part.mesh.vertex_count;
+    if (colors || part.has_color)
         snprintf(group, sizeof group, " pid=\"%zu\" pindex=\"0\"", id - 1);
-    if (!part.mesh.colors && has_color)
-        st = write_label_color(m, part.label, id - 1, err);
-    if (part.mesh.colors) {
+    if (!colors && part.has_color)
+        st = write_one_color(m, &part, id - 1, err);
+    if (colors) {
         part.group = id - 1;
-        part.numbers = numbers = cwi_alloc_array(part.mesh.vertex_count, sizeof *numbers);
-        st = numbers ? write_colors(m, &part.mesh, id - 1, numbers, err) : cwi_fail_memory(err);
+        part.numbers = numbers = cwi_alloc_array(count, sizeof *numbers);
+        st = numbers ? write_colors(m, colors, count, id - 1, numbers, err)
+                     : cwi_fail_memory(err);
     }
     cwi_xml_escape(part.name, name, sizeof name);
     if (st == CW_OK)

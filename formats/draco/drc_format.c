@@ -7,7 +7,7 @@ const cwi_format_driver cwi_format_drc = {
     .about = "Draco: a compressed mesh, LPS millimetres",
     .feature = "draco",
     .lost = "scalars, labels, affine; places between those of the grid",
-    .keeps = CW_KEEPS_SHARING | CW_KEEPS_NORMALS | CW_KEEPS_COLORS,
+    .keeps = CW_KEEPS_SHARING | CW_KEEPS_NORMALS | CW_KEEPS_COLORS | CW_KEEPS_OPACITY,
     .mesh = {.sniff = cwi_drc_sniff, .read = cwi_drc_read},
     .write = {.write = cwi_drc_write, .only = CW_COMPRESS_DRACO},
 };

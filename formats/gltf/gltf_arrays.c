@@ -19,6 +19,15 @@ static void add_array(cwi_gltf_piece *piece, cwi_gltf_array array)
     piece->arrays[piece->array_count++] = array;
 }
 
+/* Returns true if 8 bits of linear light hold all colours of the vertices. */
+static bool fit_bytes(const cwi_gltf_plan *plan, const cw_mesh *mesh)
+{
+    for (size_t i = 0; i < 4 * mesh->vertex_count; i++)
+        if (i % 4 != 3 && !plan->fits_byte[mesh->colors[i]])
+            return false;
+    return true;
+}
+
 void cwi_gltf_plan_arrays(const cwi_gltf_plan *plan, cwi_gltf_piece *piece)
 {
     const cw_mesh *m = &piece->part->mesh;
@@ -44,13 +53,21 @@ void cwi_gltf_plan_arrays(const cwi_gltf_plan *plan, cwi_gltf_piece *piece)
                                           .normalized = rounded,
                                           .count = m->vertex_count,
                                           .stride = rounded ? 4 : 12});
-    if (m->colors)
-        add_array(piece, (cwi_gltf_array){.use = CWI_GLTF_COLOR,
-                                          .component = UNSIGNED_BYTE,
-                                          .numbers = 4,
-                                          .normalized = true,
-                                          .count = m->vertex_count,
-                                          .stride = 4});
+    if (!m->colors)
+        return;
+    const bool bytes = fit_bytes(plan, m);
+    add_array(piece, (cwi_gltf_array){.use = CWI_GLTF_COLOR,
+                                      .component = bytes ? UNSIGNED_BYTE : UNSIGNED_SHORT,
+                                      .numbers = 4,
+                                      .normalized = true,
+                                      .count = m->vertex_count,
+                                      .stride = bytes ? 4 : 8});
+}
+
+void cwi_gltf_use_bytes(cwi_gltf_array *colors)
+{
+    colors->component = UNSIGNED_BYTE;
+    colors->stride = 4;
 }
 
 double cwi_gltf_stored(const cwi_gltf_plan *plan, float coordinate, int axis)
@@ -93,6 +110,19 @@ static void put_normal(const cwi_gltf_array *a, const float *n, unsigned char *t
     to[3] = 0;
 }
 
+/* Rounds 16 bits to 8, which are 257 times as coarse. */
+static void put_color(const cwi_gltf_plan *plan, const cwi_gltf_array *a, const uint8_t *color,
+                      unsigned char *to)
+{
+    for (size_t c = 0; c < 4; c++) {
+        const unsigned fine = c < 3 ? plan->linear[color[c]] : 257u * color[c];
+        if (a->component == UNSIGNED_SHORT)
+            to = cwi_put_u16(to, (uint16_t)fine);
+        else
+            *to++ = (unsigned char)((fine + 128) / 257);
+    }
+}
+
 void cwi_gltf_put(const cwi_gltf_plan *plan, const cwi_gltf_piece *piece,
                   const cwi_gltf_array *a, size_t i, unsigned char *to)
 {
@@ -111,7 +141,6 @@ void cwi_gltf_put(const cwi_gltf_plan *plan, const cwi_gltf_piece *piece,
         put_normal(a, m->normals + 3 * i, to);
         break;
     default:
-        for (size_t c = 0; c < 4; c++)
-            to[c] = c < 3 ? plan->linear[m->colors[4 * i + c]] : m->colors[4 * i + c];
+        put_color(plan, a, m->colors + 4 * i, to);
     }
 }

@@ -135,9 +135,13 @@ static cw_status compress_draco(cwi_gltf_plan *plan, cwi_gltf_piece *piece,
     cwi_gltf_plan_arrays(plan, piece);
     if (piece->part->mesh.colors && !(colors = cwi_alloc_array(count, 4)))
         return cwi_fail_memory(err);
-    for (size_t n = 0; n < piece->array_count; n++)
-        for (size_t i = 0; piece->arrays[n].use == CWI_GLTF_COLOR && i < count; i++)
-            cwi_gltf_put(plan, piece, &piece->arrays[n], i, colors + 4 * i);
+    for (size_t n = 0; n < piece->array_count; n++) {
+        cwi_gltf_array *a = &piece->arrays[n];
+        if (a->use == CWI_GLTF_COLOR)
+            cwi_gltf_use_bytes(a);
+        for (size_t i = 0; a->use == CWI_GLTF_COLOR && i < count; i++)
+            cwi_gltf_put(plan, piece, a, i, colors + 4 * i);
+    }
     cw_status st = cwi_draco_pack(&piece->part->mesh, colors, &plan->grid, NULL, desc, &packed,
                                   facts, err);
     cwi_free(colors);

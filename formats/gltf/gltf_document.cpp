@@ -114,13 +114,12 @@ int add_material(tinygltf::Model &model, const std::string &name,
     return int(model.materials.size()) - 1;
 }
 
-// Finds the material of a piece. A label has one of its own. Vertex colours are multiplied with
+// Finds the material of a piece. One of a single colour has its own. Vertex colours are multiplied with
 // the base colour, so the base colour is white with them. Other similar pieces share a material.
 int find_material(tinygltf::Model &model, const cwi_gltf_piece &piece)
 {
-    const cw_label *label = piece.part->label;
-    if (label && label->has_color && !piece.part->mesh.colors) {
-        const uint8_t *c = label->color;
+    if (piece.part->has_color) {
+        const uint8_t *c = piece.part->color;
         return add_material(model, piece.part->name,
                             {linear(c[0]), linear(c[1]), linear(c[2]), c[3] / 255.0},
                             c[3] < 255 ? "BLEND" : "OPAQUE");

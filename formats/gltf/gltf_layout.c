@@ -65,13 +65,23 @@ static bool is_translucent(const cw_mesh *mesh)
 
 /* --- colours -------------------------------------------------------------------------------- */
 
-/* Fills the table from sRGB to linear colours, which glTF has; alpha is already linear. */
-static void fill_linear(unsigned char linear[256])
+static double to_linear(double c)
+{
+    return c <= 0.04045 ? c / 12.92 : pow((c + 0.055) / 1.055, 2.4);
+}
+
+static double to_srgb(double c)
+{
+    return c <= 0.0031308 ? 12.92 * c : 1.055 * pow(c, 1 / 2.4) - 0.055;
+}
+
+/* Fills the tables from sRGB to linear colours, which glTF has; alpha is already linear. */
+static void fill_linear(cwi_gltf_plan *plan)
 {
     for (int i = 0; i < 256; i++) {
-        const double c = i / 255.0;
-        linear[i] = (unsigned char)lround(
-            255 * (c <= 0.04045 ? c / 12.92 : pow((c + 0.055) / 1.055, 2.4)));
+        const double linear = to_linear(i / 255.0), byte = (double)lround(255 * linear) / 255;
+        plan->linear[i] = (uint16_t)lround(65535 * linear);
+        plan->fits_byte[i] = lround(255 * to_srgb(byte)) == i;
     }
 }
 
@@ -146,7 +156,7 @@ cw_status cwi_gltf_plan_make(cwi_gltf_plan *plan, const cwi_parts *parts,
         st = make_pieces(plan, parts, err);
     if (st != CW_OK)
         return st;
-    fill_linear(plan->linear);
+    fill_linear(plan);
     d->local_origin = out->local_origin;
     d->provenance = out->desc->provenance;
     d->provenance_count = out->desc->provenance_count;

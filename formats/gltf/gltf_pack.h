@@ -23,7 +23,8 @@ typedef struct cwi_gltf_plan {
     size_t block_count, block_capacity;
     unsigned char *keys; /* of the animation, at the end of the buffer; NULL: none */
     size_t keys_size;
-    unsigned char linear[256]; /* linear values of sRGB bytes */
+    uint16_t linear[256]; /* linear values of sRGB bytes, in 16 bits */
+    bool fits_byte[256];  /* 8 bits of linear light give the sRGB byte back */
 } cwi_gltf_plan;
 
 /* Plans a file as out->desc requests.
@@ -45,6 +46,9 @@ static inline bool cwi_gltf_on_grid(const cwi_gltf_plan *plan)
 /* Plans arrays for a part, uncompressed: unchanged, or on the plan's grid. A dyadic grid gives
  * numbers for the exponential filter of EXT_meshopt_compression. */
 void cwi_gltf_plan_arrays(const cwi_gltf_plan *plan, cwi_gltf_piece *piece);
+
+/* Stores colours in 8 bits each, for Draco, whatever the loss. */
+void cwi_gltf_use_bytes(cwi_gltf_array *colors);
 
 /* Rounds, compresses and verifies; fills pieces and blocks. Returns as cwi_gltf_plan_make(). */
 CW_NODISCARD cw_status cwi_gltf_compress(cwi_gltf_plan *plan, const cw_write_desc *desc,

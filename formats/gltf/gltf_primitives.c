@@ -112,49 +112,94 @@ static uint8_t to_srgb(double linear, bool is_alpha)
     return (uint8_t)lround(255 * s);
 }
 
-/* Converts colours. Those of bytes are looked up, in two tables of 256. */
-static void convert_colors(const cwi_gltf_numbers *numbers, uint8_t *to)
+const cwi_gltf_material *cwi_gltf_material_of(const cwi_gltf_reader *r,
+                                              const cwi_gltf_primitive *p)
 {
-    uint8_t table[2][256];
+    return p->material >= 0 && (size_t)p->material < r->scene.material_count
+               ? &r->scene.materials[p->material]
+               : NULL;
+}
+
+void cwi_gltf_base_color(const cwi_gltf_material *m, uint8_t color[4])
+{
+    for (int c = 0; c < 4; c++)
+        color[c] = m ? to_srgb(m->base[c], c == 3) : 255;
+}
+
+/* Converts colours, times the base colour. Those of bytes are looked up, in four tables of 256. */
+static void convert_colors(const cwi_gltf_numbers *numbers, const double base[4], uint8_t *to)
+{
+    uint8_t table[4][256];
     const bool bytes = numbers->component == 5121 && numbers->normalized;
-    for (int i = 0; i < 256; i++)
-        for (int alpha = 0; alpha < 2; alpha++)
-            table[alpha][i] = to_srgb(i / 255.0, alpha);
+    for (int i = 0; i < 256 && bytes; i++)
+        for (int c = 0; c < 4; c++)
+            table[c][i] = to_srgb(base[c] * i / 255, c == 3);
     for (size_t i = 0; i < numbers->count; i++)
         for (int c = 0; c < numbers->numbers; c++)
             to[4 * i + (size_t)c] =
-                bytes ? table[c == 3][numbers->bytes[i * numbers->stride + (size_t)c]]
-                      : to_srgb(cwi_gltf_number(numbers, i, c), c == 3);
+                bytes ? table[c][numbers->bytes[i * numbers->stride + (size_t)c]]
+                      : to_srgb(base[c] * cwi_gltf_number(numbers, i, c), c == 3);
 }
 
-/* Adds colours. A primitive without colours among others that have some is white, as it is
- * drawn. */
-static cw_status add_colors(cwi_gltf_reader *r, int accessor, size_t first,
+/* Gives the vertices before `first` the colours of their triangles' materials. */
+static void color_earlier(cwi_gltf_reader *r, size_t first)
+{
+    const cwi_face_colors *f = &r->materials;
+    memset(r->colors, 255, 4 * first);
+    for (size_t i = 0; i < 3 * f->count; i++)
+        if (r->build.triangles[i] < first)
+            memcpy(r->colors + 4 * (size_t)r->build.triangles[i], f->colors + 4 * (i / 3), 4);
+}
+
+/* Adds colours of vertices: those of COLOR_0 times the base colour. A primitive without COLOR_0 among
+ * others that have some has its base colour everywhere. */
+static cw_status add_colors(cwi_gltf_reader *r, const cwi_gltf_primitive *p, size_t first,
                             cw_mesh_file *metadata, cw_error *err)
 {
+    static const double white[4] = {1, 1, 1, 1};
     const size_t count = r->build.point_count;
+    const cwi_gltf_material *m = cwi_gltf_material_of(r, p);
     cwi_gltf_numbers numbers = {0};
+    uint8_t base[4];
     cw_status st = CW_OK;
-    if (accessor < 0 && !r->colors)
+    if (p->color < 0 && !r->colors)
         return CW_OK;
-    const size_t from = r->colors ? first : 0;
-    if (accessor >= 0)
-        st = open_attribute(r, accessor, "COLOR_0", count - first, 3, 4, &numbers, err);
+    const bool is_first = !r->colors;
+    if (p->color >= 0)
+        st = open_attribute(r, p->color, "COLOR_0", count - first, 3, 4, &numbers, err);
     if (st == CW_OK && numbers.count && numbers.component != FLOAT && !numbers.normalized) {
         numbers.normalized = true; /* as it was meant: 1 of 65535 is no colour */
         if (!*metadata->fault)
             snprintf(metadata->fault, sizeof metadata->fault,
                      "accessors[%d].normalized is not true, as COLOR_0 of whole numbers needs",
-                     accessor);
+                     p->color);
     }
     if (st == CW_OK)
         st = cwi_mesh_grow(r->in, &r->colors, &r->color_capacity, count, 4, err);
     if (st == CW_OK) {
-        memset(r->colors + 4 * from, 255, 4 * (count - from));
-        convert_colors(&numbers, r->colors + 4 * first);
+        if (is_first)
+            color_earlier(r, first);
+        cwi_gltf_base_color(m, base);
+        for (size_t v = first; v < count; v++)
+            memcpy(r->colors + 4 * v, base, 4);
+        convert_colors(&numbers, m ? m->base : white, r->colors + 4 * first);
     }
     cwi_free(numbers.bytes);
     return st;
+}
+
+/* Gives the triangles of a primitive the colour of its material. */
+static cw_status color_triangles(cwi_gltf_reader *r, const cwi_gltf_primitive *p, cw_error *err)
+{
+    const cwi_gltf_material *m = cwi_gltf_material_of(r, p);
+    uint8_t color[4];
+    r->has_colors = r->has_colors || p->color >= 0 || (m && !m->is_plain);
+    r->has_texture = r->has_texture || (m && m->has_texture);
+    r->has_texcoords = r->has_texcoords || p->has_texcoords;
+    if (!r->any_base)
+        return CW_OK;
+    cwi_gltf_base_color(m, color);
+    return cwi_color_faces(&r->materials, r->build.triangle_count, color, err);
 }
 
 /* Compares the stated bounds of an accessor with its numbers, where they are as they were written.
@@ -204,7 +249,7 @@ static cw_status add_vertices(cwi_gltf_reader *r, const cwi_gltf_instance *at,
     cwi_free(numbers.bytes);
     if (st == CW_OK)
         st = add_normals(r, at, p->normal, first, err);
-    return st == CW_OK ? add_colors(r, p->color, first, metadata, err) : st;
+    return st == CW_OK ? add_colors(r, p, first, metadata, err) : st;
 }
 
 /* --- triangles --------------------------------------------------------------------------- */
@@ -313,7 +358,8 @@ static cw_status add_corners(cwi_gltf_reader *r, const cwi_gltf_instance *at,
 
 static bool same_vertices(const cwi_gltf_primitive *p, const cwi_gltf_primitive *q)
 {
-    return p->position == q->position && p->normal == q->normal && p->color == q->color;
+    return p->position == q->position && p->normal == q->normal && p->color == q->color &&
+           (p->color < 0 || p->material == q->material);
 }
 
 static uint64_t count_of(const cwi_gltf_scene *scene, int accessor)
@@ -377,6 +423,8 @@ cw_status cwi_gltf_add_instance(cwi_gltf_reader *r, const cwi_gltf_instance *at,
         }
         if (st == CW_OK)
             st = add_corners(r, at, p, first, err);
+        if (st == CW_OK)
+            st = color_triangles(r, p, err);
         metadata->parts++;
         before = p;
     }

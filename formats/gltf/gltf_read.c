@@ -133,12 +133,13 @@ static cw_status parse_json(cwi_gltf_reader *r, uint64_t at, uint64_t size,
     cw_status st = cwi_input_read_at(r->in->file.fd, at, json, (size_t)size, &got, err);
     if (st == CW_OK)
         st = cwi_gltf_check(json, got, err);
-    if (st == CW_OK && cwi_gltf_check_look(json, got, &fault) != CW_OK)
+    const bool looks_right = st == CW_OK && cwi_gltf_check_look(json, got, &fault) == CW_OK;
+    if (st == CW_OK && !looks_right)
         snprintf(metadata->fault, sizeof metadata->fault, "%.159s", fault.message);
     if (st == CW_OK)
         name_drawn(cwi_gltf_find_drawn(json, got), metadata);
     if (st == CW_OK)
-        st = cwi_gltf_blind(json, got, err);
+        st = cwi_gltf_blind(json, got, looks_right, err);
     if (st == CW_OK)
         st = cwi_gltf_parse(json, got, &r->in->desc, &r->scene, err);
     if (st == CW_OK)
@@ -258,12 +259,48 @@ static cw_status check_repeats(const cwi_gltf_reader *r, cw_error *err)
     return st;
 }
 
+/* Copies the label of a node, with the colour of its material if it has one. */
+static cw_label label_of(const cwi_gltf_reader *r, const cwi_gltf_instance *at)
+{
+    const cwi_gltf_node *n = at->node;
+    const cwi_gltf_mesh *mesh = &r->scene.meshes[at->mesh];
+    cw_label label = {.value = n->label,
+                      .layer = n->layer,
+                      .name = n->name,
+                      .has_color = n->has_color,
+                      .category = {n->codes[0], n->codes[1], n->codes[2]},
+                      .type = {n->codes[3], n->codes[4], n->codes[5]}};
+    memcpy(label.color, n->color, sizeof label.color);
+    const cwi_gltf_material *m =
+        mesh->first < mesh->end ? cwi_gltf_material_of(r, &r->scene.primitives[mesh->first])
+                                : NULL;
+    if (m && !m->is_plain) {
+        label.has_color = true;
+        cwi_gltf_base_color(m, label.color);
+    }
+    return label;
+}
+
+/* Begins the part of an instance: by the name of its node, else of its mesh. */
+static cw_status begin_part(cwi_gltf_reader *r, const cwi_gltf_instance *at, cw_error *err)
+{
+    const char *mesh = r->scene.meshes[at->mesh].name;
+    const char *name = at->node->name ? at->node->name : mesh ? mesh : "";
+    cw_status st = cwi_mesh_begin_part(r->in, name, r->build.triangle_count, err);
+    if (st != CW_OK || !at->node->has_label)
+        return st;
+    const cw_label label = label_of(r, at);
+    return cwi_mesh_label_part(r->in, &label, err);
+}
+
 static cw_status build_scene(cwi_gltf_reader *r, cw_mesh *mesh, cw_mesh_file *metadata,
                              cw_error *err)
 {
     cw_status st = cwi_gltf_find_instances(r, metadata, err);
     r->shifted = st == CW_OK && is_shifted(r);
     r->max = max_elements(r);
+    for (size_t i = 0; i < r->scene.material_count; i++)
+        r->any_base = r->any_base || !r->scene.materials[i].is_plain;
     metadata->parts = 0;
     if (st == CW_OK)
         st = check_repeats(r, err);
@@ -271,26 +308,32 @@ static cw_status build_scene(cwi_gltf_reader *r, cw_mesh *mesh, cw_mesh_file *me
         st = cwi_progress(&r->in->desc.progress, "reading",
                           (double)i / (double)r->instance_count, err);
         if (st == CW_OK)
-            st = cwi_mesh_begin_part(r->in, "", r->build.triangle_count, err);
+            st = begin_part(r, &r->instances[i], err);
         if (st == CW_OK)
             st = cwi_gltf_add_instance(r, &r->instances[i], metadata, err);
     }
     if (st != CW_OK)
         return st;
     describe_mesh(r, mesh, metadata);
+    cwi_say_left_out(metadata, r->has_texture, "textures");
+    cwi_say_left_out(metadata, r->has_texcoords, "texture coordinates");
     mesh->colors = r->colors;
     r->colors = NULL;
     if (!r->no_normals) {
         mesh->normals = r->normals;
         r->normals = NULL;
     }
-    return cwi_build_finish(&r->build, mesh, metadata, err);
+    st = cwi_build_finish(&r->build, mesh, metadata, err);
+    return st == CW_OK && r->has_colors && !mesh->colors
+               ? cwi_color_mesh(&r->materials, true, mesh, err)
+               : st;
 }
 
 static cw_status read_scene(cwi_mesh_input *in, bool binary, cw_mesh *mesh,
                             cw_mesh_file *metadata, cw_error *err)
 {
-    cwi_gltf_reader r = {.in = in, .build = {.in = in}, .bytes = {.in = &in->file}};
+    cwi_gltf_reader r = {
+        .in = in, .build = {.in = in}, .materials = {.in = in}, .bytes = {.in = &in->file}};
     uint64_t json = 0, json_size = in->file.size;
     r.unpacker.desc = &in->desc;
     r.bytes.unpacker = &r.unpacker;
@@ -309,6 +352,7 @@ static cw_status read_scene(cwi_mesh_input *in, bool binary, cw_mesh *mesh,
     cwi_free(r.instances);
     cwi_free(r.normals);
     cwi_free(r.colors);
+    cwi_face_colors_free(&r.materials);
     cwi_gltf_scene_free(&r.scene);
     return st;
 }

@@ -12,12 +12,32 @@
 #include <string.h>
 
 enum { LARGEST_ELEMENT = 256, MAX_JSON = 32 << 20, HEAD = 64 << 10 };
-static const uint64_t NO_URI = UINT64_MAX;
+static const uint64_t NO_STRING = UINT64_MAX;
+
+/* The strings of a scene in a row: URIs of buffers, names of meshes, names and codes of nodes. */
+static size_t count_strings(const cwi_gltf_scene *s)
+{
+    return (s->buffers ? s->buffer_count : 0) + (s->meshes ? s->mesh_count : 0) +
+           (s->nodes ? s->node_count * (1 + CWI_GLTF_CODES) : 0);
+}
+
+static char **string_of(const cwi_gltf_scene *s, size_t n)
+{
+    if (n < s->buffer_count)
+        return &s->buffers[n].uri;
+    n -= s->buffer_count;
+    if (n < s->mesh_count)
+        return &s->meshes[n].name;
+    n -= s->mesh_count;
+    cwi_gltf_node *node = &s->nodes[n / (1 + CWI_GLTF_CODES)];
+    const size_t code = n % (1 + CWI_GLTF_CODES);
+    return code ? &node->codes[code - 1] : &node->name;
+}
 
 void cwi_gltf_scene_free(cwi_gltf_scene *scene)
 {
-    for (size_t i = 0; scene->buffers && i < scene->buffer_count; i++)
-        cwi_free(scene->buffers[i].uri);
+    for (size_t n = 0; n < count_strings(scene); n++)
+        cwi_free(*string_of(scene, n));
     cwi_free(scene->buffers);
     cwi_free(scene->views);
     cwi_free(scene->accessors);
@@ -26,6 +46,7 @@ void cwi_gltf_scene_free(cwi_gltf_scene *scene)
     cwi_free(scene->nodes);
     cwi_free(scene->children);
     cwi_free(scene->roots);
+    cwi_free(scene->materials);
     *scene = (cwi_gltf_scene){0};
 }
 
@@ -59,6 +80,7 @@ static const column columns[] = {
     COLUMN(accessors, accessor_count), COLUMN(primitives, primitive_count),
     COLUMN(meshes, mesh_count),        COLUMN(nodes, node_count),
     COLUMN(children, child_count),     COLUMN(roots, root_count),
+    COLUMN(materials, material_count),
 };
 #undef COLUMN
 enum { COLUMNS = sizeof columns / sizeof *columns };
@@ -102,13 +124,13 @@ static bool take_bytes(tape *t, void *bytes, size_t size)
 
 /* --- in the child ------------------------------------------------------------------------- */
 
-static bool put_uri(tape *t, const char *uri)
+static bool put_string(tape *t, const char *text)
 {
-    const uint64_t size = uri ? strlen(uri) : NO_URI;
-    return put_bytes(t, &size, sizeof size) && (!uri || put_bytes(t, uri, strlen(uri)));
+    const uint64_t size = text ? strlen(text) : NO_STRING;
+    return put_bytes(t, &size, sizeof size) && (!text || put_bytes(t, text, strlen(text)));
 }
 
-/* Writes a scene: every array after its length, then the URIs of buffers. */
+/* Writes a scene: every array after its length, then the strings. */
 bool cwi_gltf_put_scene(const cwi_gltf_scene *s, void *to, size_t capacity)
 {
     tape tape_to = {.at = to, .end = (char *)to + capacity}, *t = &tape_to;
@@ -118,8 +140,8 @@ bool cwi_gltf_put_scene(const cwi_gltf_scene *s, void *to, size_t capacity)
         good = put_bytes(t, &count, sizeof count) &&
                put_bytes(t, array_of(s, &columns[n]), (size_t)count * columns[n].size);
     }
-    for (size_t i = 0; good && i < s->buffer_count; i++)
-        good = put_uri(t, s->buffers[i].uri);
+    for (size_t n = 0; good && n < count_strings(s); n++)
+        good = put_string(t, *string_of(s, n));
     return good;
 }
 
@@ -151,20 +173,20 @@ static cw_status work_on_request(void *state, int fd, const void *request, void 
 
 /* --- in the parent ------------------------------------------------------------------------ */
 
-static cw_status take_uri(tape *t, char **uri, cw_error *err)
+static cw_status take_string(tape *t, char **text, cw_error *err)
 {
     uint64_t size;
-    *uri = NULL;
+    *text = NULL;
     if (!take_bytes(t, &size, sizeof size) ||
-        (size != NO_URI && size > (size_t)(t->end - t->at)))
+        (size != NO_STRING && size > (size_t)(t->end - t->at)))
         return cwi_fail(err, CW_ERR_BACKEND, "tinygltf's answer is not valid");
-    if (size == NO_URI)
+    if (size == NO_STRING)
         return CW_OK;
-    *uri = cwi_alloc_array((size_t)size + 1, 1);
-    if (!*uri)
+    *text = cwi_alloc_array((size_t)size + 1, 1);
+    if (!*text)
         return cwi_fail_memory(err);
-    take_bytes(t, *uri, (size_t)size);
-    (*uri)[size] = '\0';
+    take_bytes(t, *text, (size_t)size);
+    (*text)[size] = '\0';
     return CW_OK;
 }
 
@@ -201,6 +223,12 @@ static bool mend_scene(cwi_gltf_scene *s)
         if (a->numbers < 0 || a->numbers > 4)
             return false;
     }
+    for (size_t i = 0; i < s->primitive_count; i++)
+        mend_bool(&s->primitives[i].has_texcoords);
+    for (size_t i = 0; i < s->material_count; i++) {
+        mend_bool(&s->materials[i].is_plain);
+        mend_bool(&s->materials[i].has_texture);
+    }
     for (size_t i = 0; i < s->mesh_count; i++)
         if (s->meshes[i].first > s->meshes[i].end || s->meshes[i].end > s->primitive_count)
             return false;
@@ -209,6 +237,8 @@ static bool mend_scene(cwi_gltf_scene *s)
         mend_bool(&n->lps);
         mend_bool(&n->has_origin);
         mend_bool(&n->has_affine);
+        mend_bool(&n->has_label);
+        mend_bool(&n->has_color);
         if (n->first > n->end || n->end > s->child_count)
             return false;
     }
@@ -222,10 +252,10 @@ cw_status cwi_gltf_take_scene(const void *from, size_t size, cwi_gltf_scene *s, 
     t->end = t->at + size;
     for (size_t n = 0; st == CW_OK && n < COLUMNS; n++)
         st = take_column(t, &columns[n], s, err);
-    for (size_t i = 0; i < s->buffer_count; i++) /* addresses in the child */
-        s->buffers[i].uri = NULL;
-    for (size_t i = 0; st == CW_OK && i < s->buffer_count; i++)
-        st = take_uri(t, &s->buffers[i].uri, err);
+    for (size_t n = 0; n < count_strings(s); n++) /* addresses in the child */
+        *string_of(s, n) = NULL;
+    for (size_t n = 0; st == CW_OK && n < count_strings(s); n++)
+        st = take_string(t, string_of(s, n), err);
     if (st == CW_OK && !mend_scene(s))
         return cwi_fail(err, CW_ERR_BACKEND, "tinygltf's answer is not valid");
     return st;

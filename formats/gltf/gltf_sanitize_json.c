@@ -27,7 +27,7 @@ static bool is_key(const char *json, size_t size, size_t at)
     return at < size && json[at] == ':';
 }
 
-static bool is_wanted(const char *key, size_t length)
+static bool is_wanted(const char *key, size_t length, bool keeps_look)
 {
     static const char *const expected[] = {
         "asset",  "scene",     "scenes",      "nodes",
@@ -35,16 +35,17 @@ static bool is_wanted(const char *key, size_t length)
     for (size_t i = 0; i < sizeof expected / sizeof *expected; i++)
         if (strlen(expected[i]) == length && memcmp(key, expected[i], length) == 0)
             return true;
-    return false;
+    static const char look[] = "materials";
+    return keeps_look && length == strlen(look) && memcmp(key, look, length) == 0;
 }
 
 /* Renames a key of the outermost object, with its quotes, in the same number of bytes. */
-static void rename_key(char *key, size_t size)
+static void rename_key(char *key, size_t size, bool keeps_look)
 {
     static const char buffers[] = "\"buffers\"", instead[] = "\"extras\" ";
     if (size == strlen(buffers) && memcmp(key, buffers, size) == 0)
         memcpy(key, instead, size);
-    else if (size > 2 && !is_wanted(key + 1, size - 2))
+    else if (size > 2 && !is_wanted(key + 1, size - 2, keeps_look))
         memset(key + 1, '_', size - 2);
 }
 
@@ -76,14 +77,14 @@ static void hide_levels(char *json, size_t at, size_t end)
         memcpy(json + at + 1, CWI_GLTF_HIDDEN_LOD, strlen(CWI_GLTF_HIDDEN_LOD));
 }
 
-cw_status cwi_gltf_blind(char *json, size_t size, cw_error *err)
+cw_status cwi_gltf_blind(char *json, size_t size, bool keeps_look, cw_error *err)
 {
     size_t depth = 0, structure = 0;
     for (size_t i = 0; i < size; i++) {
         if (json[i] == '"') {
             const size_t end = string_end(json, size, i);
             if (depth == 1 && is_key(json, size, end))
-                rename_key(json + i, end - i);
+                rename_key(json + i, end - i, keeps_look);
             if (depth == EXTENSION_DEPTH && is_key(json, size, end))
                 hide_levels(json, i, end);
             if (depth == PRIMITIVE_DEPTH && is_key(json, size, end))

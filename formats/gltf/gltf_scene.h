@@ -52,11 +52,22 @@ typedef struct cwi_gltf_primitive {
     int indices, position, normal, color;
     int draco; /* the view of KHR_draco_mesh_compression; -1: not compressed */
     int draco_position, draco_normal, draco_color; /* Draco's numbers of attributes; or -1 */
+    int material;
+    bool has_texcoords;
 } cwi_gltf_primitive;
+
+typedef struct cwi_gltf_material {
+    double base[4];   /* linear light and opacity */
+    bool is_plain;    /* the base colour says nothing: white, or 0.8 of it */
+    bool has_texture; /* of the base colour */
+} cwi_gltf_material;
 
 typedef struct cwi_gltf_mesh {
     size_t first, end; /* of primitives */
+    char *name;        /* or NULL */
 } cwi_gltf_mesh;
+
+enum { CWI_GLTF_CODES = 6 };
 
 typedef struct cwi_gltf_node {
     int mesh;
@@ -64,7 +75,14 @@ typedef struct cwi_gltf_node {
     double local[3][4];               /* to the parent's frame */
     bool lps, has_origin, has_affine; /* flags that our writer stores in extras */
     double origin[3], affine[3][4];
-    size_t levels; /* number of levels that MSFT_lod names */
+    size_t levels;  /* number of levels that MSFT_lod names */
+    char *name;     /* or NULL */
+    bool has_label; /* as our writer stores it in extras: */
+    bool has_color;
+    uint32_t label, layer;
+    uint8_t color[4];
+    char *codes
+        [CWI_GLTF_CODES]; /* category and type: scheme, value and meaning of each; or NULL */
 } cwi_gltf_node;
 
 /* A zeroed scene is empty. */
@@ -75,9 +93,10 @@ typedef struct cwi_gltf_scene {
     cwi_gltf_primitive *primitives;
     cwi_gltf_mesh *meshes;
     cwi_gltf_node *nodes;
+    cwi_gltf_material *materials;
     int *children, *roots; /* nodes */
     size_t buffer_count, view_count, accessor_count, primitive_count, mesh_count, node_count,
-        child_count, root_count;
+        child_count, root_count, material_count;
 } cwi_gltf_scene;
 
 void cwi_gltf_scene_free(cwi_gltf_scene *scene);
@@ -115,9 +134,9 @@ unsigned cwi_gltf_find_drawn(const char *json, size_t size);
  * MiB besides strings. Renames keys that no mesh needs (images, materials, extensions, ...), so
  * that the library ignores them. The indices of primitives become their "extras", since those
  * that Draco compressed have no view. MSFT_lod becomes CWI_GLTF_HIDDEN_LOD, since a library may
- * refuse what is no list of levels. "buffers" becomes "extras", which only describe: only
+ * refuse what is no list of levels. keeps_look: "materials" stay. "buffers" becomes "extras", which only describe: only
  * cwi_gltf_load() reads the bytes of buffers. */
-CW_NODISCARD cw_status cwi_gltf_blind(char *json, size_t size, cw_error *err);
+CW_NODISCARD cw_status cwi_gltf_blind(char *json, size_t size, bool keeps_look, cw_error *err);
 
 /* The place of the buffers' bytes. */
 typedef struct cwi_gltf_bytes {

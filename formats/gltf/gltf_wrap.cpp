@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <string>
 #include <vector>
 
@@ -32,6 +33,12 @@ const tinygltf::Value &member(const tinygltf::Value &from, const char *key)
 {
     static const tinygltf::Value none;
     return from.IsObject() ? from.Get(key) : none;
+}
+
+cw_status copy_string(const std::string &from, char *&to, cw_error *err)
+{
+    to = from.empty() ? nullptr : cwi_strdup(from.c_str());
+    return from.empty() || to ? CW_OK : cwi_fail_memory(err);
 }
 
 // Copies the buffers: a list of objects, which cwi_gltf_blind() has renamed to "extras".
@@ -165,6 +172,8 @@ void copy_primitive(const tinygltf::Primitive &from, cwi_gltf_primitive &to)
     to.position = find_attribute(from, "POSITION");
     to.normal = find_attribute(from, "NORMAL");
     to.color = find_attribute(from, "COLOR_0");
+    to.material = from.material;
+    to.has_texcoords = from.attributes.count("TEXCOORD_0") > 0;
     to.draco = -1;
     const auto found = from.extensions.find(GLTF_DRACO);
     if (found == from.extensions.end())
@@ -181,9 +190,11 @@ cw_status copy_meshes(const tinygltf::Model &model, cwi_gltf_scene &scene, cw_er
     size_t count = 0;
     cw_status st = allocate(scene.meshes, scene.mesh_count, model.meshes.size(), err);
     for (size_t i = 0; i < scene.mesh_count; i++) {
-        scene.meshes[i] = {count, count + model.meshes[i].primitives.size()};
+        scene.meshes[i] = {count, count + model.meshes[i].primitives.size(), nullptr};
         count = scene.meshes[i].end;
     }
+    for (size_t i = 0; i < scene.mesh_count && st == CW_OK; i++)
+        st = copy_string(model.meshes[i].name, scene.meshes[i].name, err);
     if (st == CW_OK)
         st = allocate(scene.primitives, scene.primitive_count, count, err);
     if (st != CW_OK)
@@ -193,6 +204,23 @@ cw_status copy_meshes(const tinygltf::Model &model, cwi_gltf_scene &scene, cw_er
         for (const tinygltf::Primitive &from : mesh.primitives)
             copy_primitive(from, *to++);
     return CW_OK;
+}
+
+// Copies the base colours of materials. White is that of none, and this grey that of our writer and others.
+cw_status copy_materials(const tinygltf::Model &model, cwi_gltf_scene &scene, cw_error *err)
+{
+    const cw_status st =
+        allocate(scene.materials, scene.material_count, model.materials.size(), err);
+    for (size_t i = 0; i < scene.material_count; i++) {
+        const tinygltf::Material &from = model.materials[i];
+        const auto &base = from.pbrMetallicRoughness.baseColorFactor;
+        const std::vector<double> white(4, 1.0), grey = {0.8, 0.8, 0.8, 1.0};
+        const std::vector<double> color = base.size() == 4 ? base : white;
+        std::copy(color.begin(), color.end(), scene.materials[i].base);
+        scene.materials[i].is_plain = color == white || color == grey;
+        scene.materials[i].has_texture = from.pbrMetallicRoughness.baseColorTexture.index >= 0;
+    }
+    return st;
 }
 
 // Copies the numbers of an array of that count; for anything else returns false and keeps the
@@ -218,6 +246,44 @@ void copy_extras(const tinygltf::Value &extras, cwi_gltf_node &node)
                unit.Get<std::string>() == "mm";
     node.has_origin = node.lps && copy_numbers(member(extras, "origin"), node.origin, 3);
     node.has_affine = node.lps && copy_numbers(member(extras, "affine"), node.affine[0], 12);
+}
+
+// Reads the words of a code that describe_code() wrote.
+cw_status copy_code(const tinygltf::Value &code, char **to, cw_error *err)
+{
+    static const char *const keys[] = {"scheme", "value", "meaning"};
+    cw_status st = CW_OK;
+    for (size_t n = 0; n < 3 && st == CW_OK; n++) {
+        const tinygltf::Value &word = member(code, keys[n]);
+        if (word.IsString())
+            st = copy_string(word.Get<std::string>(), to[n], err);
+    }
+    return st;
+}
+
+// Reads the label that tell_label() wrote.
+cw_status copy_label(const tinygltf::Value &extras, cwi_gltf_node &node, cw_error *err)
+{
+    const tinygltf::Value &label = member(extras, "label"), &layer = member(extras, "layer"),
+                          &color = member(extras, "color");
+    const uint64_t value = number_of(label);
+    if (!node.lps || !label.IsNumber() || value > UINT32_MAX)
+        return CW_OK;
+    node.has_label = true;
+    node.label = uint32_t(value);
+    node.layer =
+        layer.IsNumber() && number_of(layer) <= UINT32_MAX ? uint32_t(number_of(layer)) : 0;
+    unsigned rgb[3];
+    const std::string hex = color.IsString() ? color.Get<std::string>() : "";
+    if (hex.size() == 7 &&
+        std::sscanf(hex.c_str(), "#%2x%2x%2x", &rgb[0], &rgb[1], &rgb[2]) == 3) {
+        node.has_color = true;
+        for (size_t c = 0; c < 3; c++)
+            node.color[c] = uint8_t(rgb[c]);
+        node.color[3] = 255;
+    }
+    cw_status st = copy_code(member(extras, "category"), node.codes, err);
+    return st == CW_OK ? copy_code(member(extras, "type"), node.codes + 3, err) : st;
 }
 
 size_t count_levels(const tinygltf::Node &node)
@@ -272,7 +338,8 @@ cw_status copy_node(const tinygltf::Node &from, size_t index, cwi_gltf_node &to,
     set_matrix(from, to.local);
     to.levels = count_levels(from);
     copy_extras(from.extras, to);
-    return CW_OK;
+    cw_status st = copy_label(from.extras, to, err);
+    return st == CW_OK ? copy_string(from.name, to.name, err) : st;
 }
 
 cw_status copy_nodes(const tinygltf::Model &model, cwi_gltf_scene &scene, cw_error *err)
@@ -465,6 +532,8 @@ cw_status parse_scene(const char *json, size_t size, cwi_gltf_scene *scene,
             st = copy_accessors(model, *scene, err);
         if (st == CW_OK)
             st = copy_meshes(model, *scene, err);
+        if (st == CW_OK)
+            st = copy_materials(model, *scene, err);
         if (st == CW_OK)
             st = check_usages(model, *scene, err);
         return st;

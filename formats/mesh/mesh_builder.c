@@ -8,6 +8,7 @@
 
 #include <float.h>
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 /* --- memory within limits ---------------------------------------------------------------- */
@@ -75,13 +76,23 @@ cw_status cwi_mesh_begin_part(cwi_mesh_input *in, const char *name, size_t trian
     if (st != CW_OK)
         return st;
     if (untitled) {
-        m->items[m->count++] = (cwi_mark){0, m->name_bytes};
+        m->items[m->count++] = (cwi_mark){.name = m->name_bytes};
         m->names[m->name_bytes++] = '\0';
     }
-    m->items[m->count++] = (cwi_mark){triangle, m->name_bytes};
+    m->items[m->count++] = (cwi_mark){.triangle = triangle, .name = m->name_bytes};
     memcpy(m->names + m->name_bytes, name, length + 1);
     m->name_bytes += length + 1;
     return CW_OK;
+}
+
+cw_status cwi_mesh_label_part(cwi_mesh_input *in, const cw_label *label, cw_error *err)
+{
+    cwi_mark *mark = &in->marks.items[in->marks.count - 1];
+    cw_status st = cw_label_table_add(&in->labels, label, err);
+    mark->labelled = st == CW_OK;
+    mark->layer = label->layer;
+    mark->value = label->value;
+    return st;
 }
 
 cw_status cwi_mesh_limit_triangles(const cwi_mesh_input *in, uint64_t count, cw_error *err)
@@ -302,6 +313,14 @@ void cwi_build_free(cwi_mesh_build *b)
     cwi_free(b->triangles);
     cwi_free(b->polygons);
     *b = (cwi_mesh_build){0};
+}
+
+void cwi_say_left_out(cw_mesh_file *metadata, bool is_there, const char *name)
+{
+    const size_t used = strlen(metadata->left_out);
+    if (is_there)
+        snprintf(metadata->left_out + used, sizeof metadata->left_out - used, "%s%s",
+                 used ? ", " : "", name);
 }
 
 void cwi_take_comment(const char *text, bool *ours, cw_mesh *mesh, cw_mesh_file *metadata)

@@ -15,6 +15,8 @@ extern "C" {
 typedef struct cwi_mark {
     size_t triangle; /* its first triangle */
     size_t name;     /* start of its name among the names */
+    bool labelled;   /* it is the surface of a label: that of this layer and value */
+    uint32_t layer, value;
 } cwi_mark;
 
 typedef struct cwi_marks {
@@ -29,6 +31,7 @@ typedef struct cwi_mesh_input {
     cw_mesh_read_desc desc; /* defaults filled in */
     uint64_t bytes;         /* bytes of arrays so far */
     cwi_marks marks;
+    cw_label_table labels; /* those of marks */
 } cwi_mesh_input;
 
 /* Fills a zeroed mesh and the facts that the file states (parts is 1 beforehand). Coordinates
@@ -51,6 +54,11 @@ CW_NODISCARD cw_status cwi_mesh_grow(cwi_mesh_input *in, void *array, size_t *ca
  * Returns as cwi_mesh_grow() */
 CW_NODISCARD cw_status cwi_mesh_begin_part(cwi_mesh_input *in, const char *name,
                                            size_t triangle, cw_error *err);
+
+/* States the label of the part that was begun last: a copy.
+ * Returns CW_ERR_NO_MEMORY */
+CW_NODISCARD cw_status cwi_mesh_label_part(cwi_mesh_input *in, const cw_label *label,
+                                           cw_error *err);
 
 /* Counts memory that is used temporarily, until the caller subtracts it from in->bytes again.
  * Returns CW_ERR_LIMIT past desc.max_bytes; it is not counted then. */
@@ -95,6 +103,9 @@ CW_NODISCARD cw_status cwi_build_end_face(cwi_mesh_build *b, cw_mesh_file *metad
 CW_NODISCARD cw_status cwi_build_finish(cwi_mesh_build *b, cw_mesh *mesh,
                                         cw_mesh_file *metadata, cw_error *err);
 void cwi_build_free(cwi_mesh_build *b);
+
+/* Adds something to the list of what a file has and a mesh has not, if the condition holds. */
+void cwi_say_left_out(cw_mesh_file *metadata, bool is_there, const char *name);
 
 /* Reads a comment that our writers leave in text files: "cubewright VERSION, LPS, mm", and
  * after it (*ours) "origin X Y Z" of a local file. */

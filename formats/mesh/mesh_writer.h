@@ -35,6 +35,11 @@ typedef struct cwi_part {
     double from_s, until_s;                       /* time in sight; from the animation's
                                                      start */
     const cw_label *label;                        /* as in cw_part */
+    bool
+        has_color; /* one colour for all of it, in a format of parts: the label's, or that of */
+    uint8_t color[4]; /* all vertices; mesh.colors is then NULL */
+    const uint8_t
+        *face_colors; /* CW_FACE_COLORS: triangle_count x 4; NULL: none that the file keeps */
     unsigned arrays; /* that the file holds: those of the mesh and, in a file of one mesh, those
                         that the label stands for; cw_keeps flags */
     char name[CWI_NAME_BYTES]; /* printable UTF-8 on one line */

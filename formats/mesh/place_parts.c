@@ -4,6 +4,7 @@
 #include "core/base/memory.h"
 #include "core/base/status.h"
 #include "core/base/text.h"
+#include "core/mesh/mesh_attributes.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -80,12 +81,21 @@ static cw_status check_parts(const cw_part *parts, size_t count, cw_error *err)
     return empty ? cwi_fail(err, CW_ERR_ARGUMENT, "the mesh is empty") : CW_OK;
 }
 
+static const uint8_t *find_face_colors(const cw_mesh *mesh)
+{
+    const cw_attribute *row = cw_mesh_attribute_find(mesh, CW_FACE_COLORS);
+    return row && row->on == CW_ON_TRIANGLES && row->type == CW_U8 && row->components == 4
+               ? row->data
+               : NULL;
+}
+
 unsigned cwi_arrays_of(const cw_mesh *mesh)
 {
     unsigned has =
         (mesh->normals ? CW_KEEPS_NORMALS : 0u) | (mesh->colors ? CW_KEEPS_COLORS : 0u) |
         (mesh->scalars ? CW_KEEPS_SCALARS : 0u) | (mesh->labels ? CW_KEEPS_LABELS : 0u) |
-        (mesh->attribute_count ? CW_KEEPS_ATTRIBUTES : 0u);
+        (find_face_colors(mesh) ? CW_KEEPS_FACE_COLORS : 0u) |
+        (mesh->attribute_count > (find_face_colors(mesh) ? 1 : 0) ? CW_KEEPS_ATTRIBUTES : 0u);
     for (int i = 0; i < 12; i++)
         has |= mesh->affine[i / 4][i % 4] != 0 ? CW_KEEPS_AFFINE : 0u;
     return has;
@@ -107,6 +117,22 @@ static unsigned arrays_of_label(const cw_label *label)
                               : (unsigned)CW_KEEPS_LABELS;
 }
 
+/* Finds the one colour of a part: that of its label, unless its vertices have colours; else the colour of
+ * all its vertices. White of vertices stays theirs, since a white material is no colour to readers. */
+static void choose_color(cwi_part *part)
+{
+    static const uint8_t white[4] = {255, 255, 255, 255};
+    const cw_label *label = part->label;
+    if (cwi_mesh_one_color(&part->mesh, part->color) &&
+        memcmp(part->color, white, sizeof white) != 0) {
+        part->has_color = true;
+        part->mesh.colors = NULL;
+    } else if (!part->mesh.colors && label && label->has_color) {
+        part->has_color = true;
+        memcpy(part->color, label->color, sizeof part->color);
+    }
+}
+
 /* Drops arrays that one part lacks, for formats where all parts share the arrays. */
 static void choose_arrays(cwi_parts *parts, unsigned keeps)
 {
@@ -121,7 +147,11 @@ static void choose_arrays(cwi_parts *parts, unsigned keeps)
     for (size_t i = 0; i < parts->count; i++) {
         cwi_part *part = &parts->items[i];
         part->arrays &= keeps & CW_KEEPS_PARTS ? keeps : shared;
+        part->face_colors =
+            part->arrays & CW_KEEPS_FACE_COLORS ? find_face_colors(&part->mesh) : NULL;
         keep_arrays(&part->mesh, part->arrays);
+        if (keeps & CW_KEEPS_PARTS && keeps & CW_KEEPS_COLORS)
+            choose_color(part);
         part->first_normal = normals;
         normals += part->arrays & CW_KEEPS_NORMALS ? part->mesh.vertex_count : 0;
     }

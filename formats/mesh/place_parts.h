@@ -28,9 +28,14 @@ unsigned cwi_arrays_of(const cw_mesh *mesh);
  * no name can break a line of OBJ, the JSON of glTF, or a terminal. */
 void cwi_clean_name(const char *text, size_t size, char name[CWI_NAME_BYTES]);
 
-/* Splits a mesh at its marks. Parts that share vertices are one. A mesh of one part is emptied.
+/* Gives the vertices of a whole mesh the labels of its parts, if each part has one.
+ * Returns CW_ERR_NO_MEMORY, and the mesh is emptied */
+CW_NODISCARD cw_status cwi_parts_label(const cwi_mesh_input *in, cw_mesh *mesh, cw_error *err);
+
+/* Splits a mesh at its marks. Parts that share vertices are one. A mesh of one part is emptied. The
+ * labels of the input move to the parts.
  * Returns CW_ERR_NO_MEMORY, CW_ERR_LIMIT */
-CW_NODISCARD cw_status cwi_parts_split(const cwi_mesh_input *in, cw_mesh *mesh, cw_part **parts,
+CW_NODISCARD cw_status cwi_parts_split(cwi_mesh_input *in, cw_mesh *mesh, cw_part **parts,
                                        size_t *count, cw_error *err);
 
 #endif

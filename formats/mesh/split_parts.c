@@ -13,6 +13,7 @@ static const uint32_t NONE = UINT32_MAX;
 /* The result in one piece of memory: the parts, and after them the data they point to. */
 typedef struct held {
     cw_mesh mesh;
+    cw_label_table labels; /* of all parts; in the first one */
     char name[CWI_NAME_BYTES];
 } held;
 
@@ -120,17 +121,39 @@ static bool take_apart(split *s)
     return true;
 }
 
-/* Gives each part the name of its first run. */
+/* Leaves out colours of vertices that are all the label's. */
+static void drop_label_color(cw_mesh *mesh, const cw_label *label)
+{
+    uint8_t color[4];
+    if (!cwi_mesh_one_color(mesh, color) || !label->has_color ||
+        memcmp(color, label->color, sizeof color) != 0)
+        return;
+    cwi_free(mesh->colors);
+    mesh->colors = NULL;
+}
+
+static const cw_label *find_label(const split *s, const cwi_mark *mark)
+{
+    return mark->labelled ? cw_label_find(&s->held->labels, mark->layer, mark->value) : NULL;
+}
+
+/* Gives each part the name and the label of its first run. */
 static void name_parts(split *s)
 {
+    for (size_t p = 0; p < s->count; p++)
+        s->parts[p] = (cw_part){.mesh = &s->held[p].mesh};
     for (size_t run = s->marks->count; run-- > 0;)
         if (s->part_of[run] != NONE) {
-            const char *name = s->marks->names + s->marks->items[run].name;
-            cwi_clean_name(name, strlen(name), s->held[s->part_of[run]].name);
+            const cwi_mark *mark = &s->marks->items[run];
+            const char *name = s->marks->names + mark->name;
+            const uint32_t p = s->part_of[run];
+            cwi_clean_name(name, strlen(name), s->held[p].name);
+            s->parts[p].name = s->held[p].name[0] ? s->held[p].name : NULL;
+            s->parts[p].label = find_label(s, mark);
         }
     for (size_t p = 0; p < s->count; p++)
-        s->parts[p] = (cw_part){.mesh = &s->held[p].mesh,
-                                .name = s->held[p].name[0] ? s->held[p].name : NULL};
+        if (s->parts[p].label)
+            drop_label_color(&s->held[p].mesh, s->parts[p].label);
 }
 
 static bool make_parts(split *s)
@@ -170,8 +193,30 @@ static cw_status limit_memory(const cwi_mesh_input *in, const cw_mesh *m, cw_err
                     "the parts need more memory than the %s allowed (desc->max_bytes)", text);
 }
 
-cw_status cwi_parts_split(const cwi_mesh_input *in, cw_mesh *mesh, cw_part **parts,
-                          size_t *count, cw_error *err)
+cw_status cwi_parts_label(const cwi_mesh_input *in, cw_mesh *mesh, cw_error *err)
+{
+    const cwi_marks *marks = &in->marks;
+    const size_t count = mesh->triangle_count;
+    size_t labelled = 0;
+    for (size_t n = 0; n < marks->count; n++)
+        labelled += marks->items[n].labelled || marks->items[n].triangle == count;
+    if (mesh->labels || !in->labels.count || labelled < marks->count)
+        return CW_OK;
+    mesh->labels = cwi_alloc_zeroed(mesh->vertex_count, sizeof *mesh->labels);
+    if (!mesh->labels) {
+        cw_mesh_free(mesh);
+        return cwi_fail_memory(err);
+    }
+    for (size_t n = 0; n < marks->count; n++) {
+        const size_t end = n + 1 < marks->count ? marks->items[n + 1].triangle : count;
+        for (size_t i = 3 * marks->items[n].triangle; i < 3 * end; i++)
+            mesh->labels[mesh->triangles[i]] = marks->items[n].value;
+    }
+    return CW_OK;
+}
+
+cw_status cwi_parts_split(cwi_mesh_input *in, cw_mesh *mesh, cw_part **parts, size_t *count,
+                          cw_error *err)
 {
     split s = {
         .whole = mesh, .marks = &in->marks, .run_count = in->marks.count ? in->marks.count : 1};
@@ -183,9 +228,11 @@ cw_status cwi_parts_split(const cwi_mesh_input *in, cw_mesh *mesh, cw_part **par
     s.run_of = cwi_alloc_array(vertices, sizeof *s.run_of);
     s.new = cwi_alloc_array(vertices, sizeof *s.new);
     const bool ok = s.part_of && s.run_of && s.new &&make_parts(&s);
-    if (ok)
+    if (ok) {
+        s.held->labels = in->labels;
+        in->labels = (cw_label_table){0};
         name_parts(&s);
-    else
+    } else
         cw_parts_free(s.parts, s.parts ? s.count : 0);
     cwi_free(s.part_of);
     cwi_free(s.run_of);
@@ -198,7 +245,9 @@ cw_status cwi_parts_split(const cwi_mesh_input *in, cw_mesh *mesh, cw_part **par
 void cw_parts_free(cw_part *parts, size_t count)
 {
     held *h = parts ? (held *)(parts + count) : NULL;
-    for (size_t p = 0; p < count; p++)
+    for (size_t p = 0; p < count; p++) {
         cw_mesh_free(&h[p].mesh);
+        cw_label_table_free(&h[p].labels);
+    }
     cwi_free(parts);
 }

@@ -5,8 +5,9 @@ const cwi_format_driver cwi_format_obj = {
     .name = "obj",
     .extensions = ".obj",
     .about = "Wavefront OBJ, LPS millimetres",
-    .lost = "colours, scalars, labels, affine",
-    .keeps = CW_KEEPS_SHARING | CW_KEEPS_NORMALS | CW_KEEPS_PARTS,
+    .lost = "scalars, labels, affine; the opacity of vertices",
+    .keeps = CW_KEEPS_SHARING | CW_KEEPS_NORMALS | CW_KEEPS_COLORS | CW_KEEPS_PARTS |
+             CW_KEEPS_FACE_COLORS,
     .mesh = {.read = cwi_obj_read},
     .write = {.write = cwi_obj_write, .spools = true, .text = true},
 };

@@ -1,8 +1,10 @@
-/* Reads Wavefront OBJ: vertices, normals and faces, in objects or groups; ignores materials. */
+/* Reads Wavefront OBJ: vertices, normals and faces, in objects or groups, with colours of vertices, and of
+ * faces by their materials. */
 #include "core/base/memory.h"
 #include "core/base/status.h"
 #include "core/base/text.h"
 #include "formats/obj/obj_format.h"
+#include "formats/obj/obj_materials.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -19,6 +21,13 @@ typedef struct obj {
     bool mixed;       /* some vertex has two normals, or a corner none: then none are kept */
     bool ours;        /* a comment of our writer was found */
     bool has_objects; /* then groups are not parts */
+    float *colors;    /* of the first color_count vertices x 3; negative: none */
+    size_t color_count, color_capacity;
+    bool is_bright; /* some number is above 1: they go to 255 */
+    cwi_obj_materials materials;
+    cwi_face_colors faces;
+    const cwi_obj_material *material; /* of the next faces; valid until more are read */
+    bool has_texture, has_texcoords;
 } obj;
 
 /* --- normals ----------------------------------------------------------------------------- */
@@ -145,13 +154,42 @@ static cw_status read_face(obj *o, cwi_scan *s, cw_mesh_file *metadata, cw_error
 
 /* --- lines ------------------------------------------------------------------------------- */
 
-/* Reads x y z of a vertex. Further numbers may be a weight or a colour, and are ignored. */
+/* Keeps the colour of the next vertex. Those before it that have none are marked. */
+static cw_status keep_color(obj *o, const double color[3], cw_error *err)
+{
+    const size_t count = o->build.point_count + 1;
+    cw_status st = cwi_mesh_grow(o->build.in, &o->colors, &o->color_capacity, count,
+                                 3 * sizeof *o->colors, err);
+    if (st != CW_OK)
+        return st;
+    for (; o->color_count + 1 < count; o->color_count++)
+        o->colors[3 * o->color_count] = -1;
+    for (size_t c = 0; c < 3; c++) {
+        const double value = fmin(fmax(isnan(color[c]) ? 0 : color[c], 0), 255);
+        o->colors[3 * o->color_count + c] = (float)value;
+        o->is_bright = o->is_bright || value > 1.001; /* allows for rounding */
+    }
+    o->color_count = count;
+    return CW_OK;
+}
+
+/* Reads x y z of a vertex. Three or more numbers behind it are its colour; one is a weight, and ignored. */
 static cw_status read_vertex(obj *o, cwi_scan *s, cw_error *err)
 {
-    double point[3] = {0};
+    double point[3] = {0}, color[3] = {0};
+    cwi_word word = {0};
+    int count = 0;
     cw_status st = CW_OK;
     for (int a = 0; a < 3 && st == CW_OK; a++)
         st = cwi_scan_double(s, "a coordinate", &point[a], err);
+    if (st == CW_OK)
+        st = cwi_scan_word(s, &word, err);
+    while (st == CW_OK && count < 3 && word.size && cwi_word_double(&word, &color[count])) {
+        count++;
+        st = cwi_scan_word(s, &word, err);
+    }
+    if (st == CW_OK && count == 3)
+        st = keep_color(o, color, err);
     if (st == CW_OK)
         st = cwi_build_point(&o->build, point, err);
     return st == CW_OK ? cwi_scan_end_line(s, err) : st;
@@ -164,6 +202,28 @@ static cw_status read_comment(obj *o, cwi_scan *s, cw_mesh *mesh, cw_mesh_file *
     cw_status st = cwi_scan_rest(s, text, err);
     if (st == CW_OK)
         cwi_take_comment(text, &o->ours, mesh, metadata);
+    return st == CW_OK ? cwi_scan_end_line(s, err) : st;
+}
+
+/* Colours the faces so far by the material that counts for them. */
+static cw_status color_faces(obj *o, cw_error *err)
+{
+    const cwi_obj_material *m = o->material;
+    if (o->faces.count < o->build.triangle_count && m)
+        o->has_texture = o->has_texture || m->has_texture;
+    return cwi_color_faces(&o->faces, o->build.triangle_count,
+                           m && m->has_color ? m->color : NULL, err);
+}
+
+static cw_status read_material(obj *o, cwi_scan *s, bool is_file, cw_error *err)
+{
+    char name[CWI_REST_BYTES];
+    cw_status st = cwi_scan_rest(s, name, err);
+    if (st == CW_OK)
+        st = color_faces(o, err);
+    if (st == CW_OK && is_file)
+        st = cwi_obj_read_materials(&o->materials, name, err);
+    o->material = is_file ? NULL : cwi_obj_find_material(&o->materials, name);
     return st == CW_OK ? cwi_scan_end_line(s, err) : st;
 }
 
@@ -196,6 +256,10 @@ static cw_status read_line(obj *o, cwi_scan *s, cw_mesh *mesh, cw_mesh_file *met
         return read_comment(o, s, mesh, metadata, err);
     else if (cwi_word_is(&word, "o") || cwi_word_is(&word, "g"))
         return read_part(o, s, word.text[0] == 'o', err);
+    else if (cwi_word_is(&word, "usemtl") || cwi_word_is(&word, "mtllib"))
+        return read_material(o, s, word.text[0] == 'm', err);
+    else if (cwi_word_is(&word, "vt"))
+        o->has_texcoords = true;
     else if (cwi_word_is(&word, "l") || cwi_word_is(&word, "p"))
         metadata->skipped++;
     return st == CW_OK ? cwi_scan_end_line(s, err) : st;
@@ -214,21 +278,56 @@ static cw_status read_lines(obj *o, cwi_scan *s, cw_mesh *mesh, cw_mesh_file *me
     return st;
 }
 
+/* Moves the colours of vertices to the mesh; without them, those of faces. Programs that write both mean
+ * the vertices. */
+static cw_status keep_colors(obj *o, cw_mesh *mesh, cw_error *err)
+{
+    size_t capacity = 0;
+    const double scale = o->is_bright ? 1.0 / 255 : 1;
+    if (!o->color_count)
+        return cwi_color_mesh(&o->faces, true, mesh, err);
+    cw_status st =
+        cwi_mesh_grow(o->build.in, &mesh->colors, &capacity, mesh->vertex_count, 4, err);
+    if (st != CW_OK)
+        return st;
+    memset(mesh->colors, 255, 4 * mesh->vertex_count);
+    for (size_t v = 0; v < o->color_count; v++)
+        for (size_t c = 0; c < 3 && o->colors[3 * v] >= 0; c++)
+            mesh->colors[4 * v + c] = cwi_obj_color((double)o->colors[3 * v + c], scale);
+    return CW_OK;
+}
+
+static void free_obj(obj *o)
+{
+    cwi_build_free(&o->build);
+    cwi_free(o->normals);
+    cwi_free(o->normal_of);
+    cwi_free(o->colors);
+    cwi_obj_materials_free(&o->materials);
+    cwi_face_colors_free(&o->faces);
+}
+
 cw_status cwi_obj_read(cwi_mesh_input *in, cw_mesh *mesh, cw_mesh_file *metadata, cw_error *err)
 {
-    obj o = {.build = {.in = in, .base = 1}};
+    obj o = {.build = {.in = in, .base = 1}, .materials = {.in = in}, .faces = {.in = in}};
     cwi_scan s = {0};
     cw_status st = cwi_scan_open_text(&s, &in->file, 0, &in->desc.progress, err);
     s.by_line = true;
     if (st == CW_OK)
         st = read_lines(&o, &s, mesh, metadata, err);
     if (st == CW_OK)
+        st = color_faces(&o, err);
+    if (st == CW_OK)
         st = cwi_build_finish(&o.build, mesh, metadata, err);
     if (st == CW_OK)
         st = keep_normals(&o, mesh, err);
+    if (st == CW_OK)
+        st = keep_colors(&o, mesh, err);
+    cwi_say_left_out(metadata, o.has_texture, "textures");
+    cwi_say_left_out(metadata, o.has_texcoords, "texture coordinates");
+    cwi_say_left_out(metadata, o.materials.is_missing,
+                     "materials of a missing or damaged file");
     cwi_scan_close(&s);
-    cwi_build_free(&o.build);
-    cwi_free(o.normals);
-    cwi_free(o.normal_of);
+    free_obj(&o);
     return st;
 }

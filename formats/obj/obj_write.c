@@ -6,12 +6,17 @@
 #include "formats/obj/obj_format.h"
 
 #include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
 
-enum { MATERIAL_BYTES = CWI_NAME_BYTES + 32 };
+enum { MATERIAL_BYTES = CWI_NAME_BYTES + 32, COLOR_NAME_BYTES = 24 };
 
 static unsigned char *encode_place(const cwi_part *part, size_t v, unsigned char *to)
 {
-    return cwi_put_text(cwi_put_place(cwi_put_text(to, "v "), part, v), "\n");
+    to = cwi_put_place(cwi_put_text(to, "v "), part, v);
+    for (size_t c = 0; part->mesh.colors && c < 3; c++) /* four digits give the byte back */
+        to = cwi_put_decimal(cwi_put_text(to, " "), part->mesh.colors[4 * v + c] / 255.0, 4);
+    return cwi_put_text(to, "\n");
 }
 
 static unsigned char *encode_normal(const cwi_part *part, size_t v, unsigned char *to)
@@ -19,9 +24,32 @@ static unsigned char *encode_normal(const cwi_part *part, size_t v, unsigned cha
     return cwi_put_text(cwi_put_normal(cwi_put_text(to, "vn "), part, v), "\n");
 }
 
+static uint32_t pack_color(const uint8_t c[4])
+{
+    return (uint32_t)c[0] << 24 | (uint32_t)c[1] << 16 | (uint32_t)c[2] << 8 | c[3];
+}
+
+static void print_color_name(uint32_t color, char text[COLOR_NAME_BYTES])
+{
+    snprintf(text, COLOR_NAME_BYTES, "color_%08X", color);
+}
+
+/* Names the material of a face where it is another than that of the face before it. */
+static unsigned char *encode_material(const cwi_part *part, size_t t, unsigned char *to)
+{
+    const uint8_t *color = part->face_colors + 4 * t;
+    char name[COLOR_NAME_BYTES];
+    if (t > 0 && memcmp(color, color - 4, 4) == 0)
+        return to;
+    print_color_name(pack_color(color), name);
+    return cwi_put_text(cwi_put_text(cwi_put_text(to, "usemtl "), name), "\n");
+}
+
 /* Encodes a face. Numbers start at 1, and continue from object to object. */
 static unsigned char *encode_face(const cwi_part *part, size_t t, unsigned char *to)
 {
+    if (part->face_colors)
+        to = encode_material(part, t, to);
     *to++ = 'f';
     for (int c = 0; c < 3; c++) {
         const uint64_t number = cwi_corner_number(part, t, c) + 1;
@@ -35,20 +63,69 @@ static unsigned char *encode_face(const cwi_part *part, size_t t, unsigned char 
 
 static bool has_material(const cwi_part *part)
 {
-    return part->label && part->label->has_color;
+    return part->has_color && !part->face_colors;
 }
 
-/* Prints the name of a part's material: one word that no other label has. */
+/* Prints the name of a part's material: one word that no other label or colour has. */
 static void print_material(const cwi_part *part, char text[MATERIAL_BYTES])
 {
-    const int length = snprintf(text, MATERIAL_BYTES, "%s_%u", part->name, part->label->value);
+    const cw_label *label = part->label;
+    const int length =
+        label ? snprintf(text, MATERIAL_BYTES, "%s_%u", part->name, label->value)
+              : snprintf(text, MATERIAL_BYTES, "%s_%08X", part->name, pack_color(part->color));
     for (char *c = text; *c; c++)
         *c = *c == ' ' ? '_' : *c;
-    if (part->label->layer > 0)
-        snprintf(text + length, MATERIAL_BYTES - (size_t)length, "_%u", part->label->layer);
+    if (label && label->layer > 0)
+        snprintf(text + length, MATERIAL_BYTES - (size_t)length, "_%u", label->layer);
 }
 
-/* Writes the materials of labels into a file of the same name that ends in .mtl. Colours are
+static cw_status write_material(cwi_mesh_output *out, const char *name, uint32_t color,
+                                cw_error *err)
+{
+    return cwi_outfile_printf(out->side, err, "newmtl %s\nKd %.4f %.4f %.4f\nd %.4f\n", name,
+                              (color >> 24) / 255.0, (color >> 16 & 255) / 255.0,
+                              (color >> 8 & 255) / 255.0, (color & 255) / 255.0);
+}
+
+static int compare_colors(const void *a, const void *b)
+{
+    const uint32_t *x = a, *y = b;
+    return (*x > *y) - (*x < *y);
+}
+
+static bool has_face_colors(const cwi_parts *parts)
+{
+    for (size_t i = 0; i < parts->count; i++)
+        if (parts->items[i].face_colors)
+            return true;
+    return false;
+}
+
+/* Writes a material for each colour of faces. */
+static cw_status write_face_materials(const cwi_parts *parts, cwi_mesh_output *out,
+                                      cw_error *err)
+{
+    char name[COLOR_NAME_BYTES];
+    size_t count = 0;
+    uint32_t *colors = cwi_alloc_array((size_t)parts->triangles, sizeof *colors);
+    cw_status st = colors ? CW_OK : cwi_fail_memory(err);
+    for (size_t i = 0; i < parts->count && st == CW_OK; i++)
+        for (size_t t = 0;
+             parts->items[i].face_colors && t < parts->items[i].mesh.triangle_count; t++)
+            colors[count++] = pack_color(parts->items[i].face_colors + 4 * t);
+    if (count)
+        qsort(colors, count, sizeof *colors, compare_colors);
+    for (size_t n = 0; n < count && st == CW_OK; n++) {
+        if (n > 0 && colors[n] == colors[n - 1])
+            continue;
+        print_color_name(colors[n], name);
+        st = write_material(out, name, colors[n], err);
+    }
+    cwi_free(colors);
+    return st;
+}
+
+/* Writes the materials of parts and faces into a file of the same name that ends in .mtl. Colours are
  * those of sRGB, as readers expect them, with digits that give the byte again. */
 static cw_status write_materials(const cwi_parts *parts, cwi_mesh_output *out, cw_error *err)
 {
@@ -68,12 +145,11 @@ static cw_status write_materials(const cwi_parts *parts, cwi_mesh_output *out, c
     for (size_t i = 0; i < parts->count && st == CW_OK; i++) {
         if (!has_material(&parts->items[i]))
             continue;
-        const uint8_t *c = parts->items[i].label->color;
         print_material(&parts->items[i], material);
-        st = cwi_outfile_printf(out->side, err, "newmtl %s\nKd %.4f %.4f %.4f\nd %.4f\n",
-                                material, c[0] / 255.0, c[1] / 255.0, c[2] / 255.0,
-                                c[3] / 255.0);
+        st = write_material(out, material, pack_color(parts->items[i].color), err);
     }
+    if (st == CW_OK && has_face_colors(parts))
+        st = write_face_materials(parts, out, err);
     cwi_free(path);
     return st;
 }
@@ -105,7 +181,7 @@ cw_status cwi_obj_write(const cwi_parts *parts, cwi_mesh_output *out, cw_error *
     out->total += last->arrays & CW_KEEPS_NORMALS ? last->mesh.vertex_count : 0;
     cw_status st =
         cwi_outfile_printf(out->file, err, "# cubewright %s, %s\n%s", CW_VERSION, axes, origin);
-    bool has_materials = false;
+    bool has_materials = has_face_colors(parts);
     for (size_t i = 0; i < parts->count; i++)
         has_materials = has_materials || has_material(&parts->items[i]);
     if (st == CW_OK && has_materials)

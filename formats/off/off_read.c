@@ -2,6 +2,7 @@
  * coordinates. */
 #include "core/base/memory.h"
 #include "core/base/status.h"
+#include "formats/mesh/face_colors.h"
 #include "formats/off/off_format.h"
 
 #include <math.h>
@@ -11,6 +12,7 @@ typedef struct off {
     cwi_mesh_build build;
     uint64_t vertices, faces;
     bool normals, colors;
+    cwi_face_colors face_colors;
 } off;
 
 static bool skip_letters(const char **at, const char *letters)
@@ -138,8 +140,8 @@ static cw_status ensure_capacity(off *o, cw_mesh *mesh, cw_error *err)
 }
 
 /* Reads a colour: whole numbers up to 255, or numbers up to 1 with a point in them. Alpha is
- * optional. A vertex with fewer than three numbers is white. */
-static cw_status read_color(cwi_scan *s, uint8_t color[4], cw_error *err)
+ * optional. Fewer than three numbers (*is_there is false) give white. */
+static cw_status read_color(cwi_scan *s, uint8_t color[4], bool *is_there, cw_error *err)
 {
     double number[4] = {0};
     bool fraction = false;
@@ -156,6 +158,7 @@ static cw_status read_color(cwi_scan *s, uint8_t color[4], cw_error *err)
         const bool given = count >= 3 && c < count && isfinite(value);
         color[c] = given ? (uint8_t)lround(fmin(fmax(value, 0), 255)) : 255;
     }
+    *is_there = count >= 3;
     return st;
 }
 
@@ -163,6 +166,7 @@ static cw_status read_vertex(off *o, cwi_scan *s, cw_mesh *mesh, cw_error *err)
 {
     const size_t v = o->build.point_count;
     double point[3] = {0}, normal[3] = {0};
+    bool is_colored;
     cw_status st = CW_OK;
     for (int a = 0; a < 3 && st == CW_OK; a++)
         st = cwi_scan_double(s, "a coordinate", &point[a], err);
@@ -171,13 +175,15 @@ static cw_status read_vertex(off *o, cwi_scan *s, cw_mesh *mesh, cw_error *err)
     for (size_t a = 0; a < 3 && st == CW_OK && o->normals; a++) /* others are not normals */
         mesh->normals[3 * v + a] = fabs(normal[a]) < 1e30 ? (float)normal[a] : NAN;
     if (st == CW_OK && o->colors)
-        st = read_color(s, mesh->colors + 4 * v, err);
+        st = read_color(s, mesh->colors + 4 * v, &is_colored, err);
     return st == CW_OK ? cwi_build_point(&o->build, point, err) : st;
 }
 
 static cw_status read_face(off *o, cwi_scan *s, cw_mesh_file *metadata, cw_error *err)
 {
     int64_t corners, corner;
+    uint8_t color[4];
+    bool is_colored = false;
     cw_status st = cwi_scan_integer(s, "a face's number of corners", &corners, err);
     if (st == CW_OK && corners < 0)
         return cwi_fail(err, CW_ERR_FORMAT, "line %zu: a face has %lld corners", s->line,
@@ -189,7 +195,11 @@ static cw_status read_face(off *o, cwi_scan *s, cw_mesh_file *metadata, cw_error
     }
     if (st == CW_OK)
         st = cwi_build_end_face(&o->build, metadata, err);
-    return st;
+    if (st == CW_OK)
+        st = read_color(s, color, &is_colored, err);
+    return st == CW_OK ? cwi_color_faces(&o->face_colors, o->build.triangle_count,
+                                         is_colored ? color : NULL, err)
+                       : st;
 }
 
 /* Goes to the line of element i. */
@@ -227,7 +237,7 @@ static cw_status read_lines(off *o, cwi_scan *s, cw_mesh *mesh, cw_mesh_file *me
 
 cw_status cwi_off_read(cwi_mesh_input *in, cw_mesh *mesh, cw_mesh_file *metadata, cw_error *err)
 {
-    off o = {.build = {.in = in}};
+    off o = {.build = {.in = in}, .face_colors = {.in = in}};
     cwi_scan s = {0};
     cw_status st = cwi_scan_open_text(&s, &in->file, 0, &in->desc.progress, err);
     s.by_line = s.comments = true;
@@ -241,7 +251,10 @@ cw_status cwi_off_read(cwi_mesh_input *in, cw_mesh *mesh, cw_mesh_file *metadata
         st = read_lines(&o, &s, mesh, metadata, err);
     if (st == CW_OK)
         st = cwi_build_finish(&o.build, mesh, metadata, err);
+    if (st == CW_OK)
+        st = cwi_color_mesh(&o.face_colors, false, mesh, err);
     cwi_scan_close(&s);
     cwi_build_free(&o.build);
+    cwi_face_colors_free(&o.face_colors);
     return st;
 }

@@ -12,6 +12,14 @@ static unsigned char *encode_vertex(const cwi_part *part, size_t v, unsigned cha
     return cwi_put_text(to, "\n");
 }
 
+static unsigned char *encode_face(const cwi_part *part, size_t t, unsigned char *to)
+{
+    to = cwi_put_face_line(part, t, to) - 1; /* without the line end */
+    for (size_t c = 0; part->face_colors && c < 4; c++)
+        to = cwi_put_integer(cwi_put_text(to, " "), part->face_colors[4 * t + c]);
+    return cwi_put_text(to, "\n");
+}
+
 cw_status cwi_off_write(const cwi_parts *parts, cwi_mesh_output *out, cw_error *err)
 {
     const unsigned has = parts->items[0].arrays; /* all have the same */
@@ -26,6 +34,6 @@ cw_status cwi_off_write(const cwi_parts *parts, cwi_mesh_output *out, cw_error *
     if (st == CW_OK)
         st = cwi_write_part_vertices(parts, out, encode_vertex, err);
     if (st == CW_OK)
-        st = cwi_write_triangles(parts, out, cwi_put_face_line, err);
+        st = cwi_write_triangles(parts, out, encode_face, err);
     return st;
 }

@@ -32,6 +32,10 @@ typedef enum cwi_ply_role {
     CWI_PLY_SCALAR,
     CWI_PLY_LABEL,
     CWI_PLY_INDICES,
+    CWI_PLY_FACE_RED,
+    CWI_PLY_FACE_GREEN,
+    CWI_PLY_FACE_BLUE,
+    CWI_PLY_FACE_ALPHA,
     CWI_PLY_NOTHING /* read and ignored */
 } cwi_ply_role;
 

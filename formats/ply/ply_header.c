@@ -35,10 +35,23 @@ static const struct {
     {"vertex", "green", CWI_PLY_GREEN, false},
     {"vertex", "blue", CWI_PLY_BLUE, false},
     {"vertex", "alpha", CWI_PLY_ALPHA, false},
+    {"vertex", "r", CWI_PLY_RED, false},
+    {"vertex", "g", CWI_PLY_GREEN, false},
+    {"vertex", "b", CWI_PLY_BLUE, false},
+    {"vertex", "diffuse_red", CWI_PLY_RED, false},
+    {"vertex", "diffuse_green", CWI_PLY_GREEN, false},
+    {"vertex", "diffuse_blue", CWI_PLY_BLUE, false},
     {"vertex", "scalar", CWI_PLY_SCALAR, false},
     {"vertex", "label", CWI_PLY_LABEL, false},
     {"face", "vertex_indices", CWI_PLY_INDICES, true},
     {"face", "vertex_index", CWI_PLY_INDICES, true},
+    {"face", "red", CWI_PLY_FACE_RED, false},
+    {"face", "green", CWI_PLY_FACE_GREEN, false},
+    {"face", "blue", CWI_PLY_FACE_BLUE, false},
+    {"face", "alpha", CWI_PLY_FACE_ALPHA, false},
+    {"face", "diffuse_red", CWI_PLY_FACE_RED, false},
+    {"face", "diffuse_green", CWI_PLY_FACE_GREEN, false},
+    {"face", "diffuse_blue", CWI_PLY_FACE_BLUE, false},
 };
 
 size_t cwi_ply_type_size(cwi_ply_type type)

@@ -3,6 +3,7 @@
 
 #include "core/base/memory.h"
 #include "core/base/status.h"
+#include "formats/mesh/face_colors.h"
 #include "formats/ply/ply_format.h"
 
 #include <float.h>
@@ -12,6 +13,7 @@
 typedef struct ply {
     cwi_ply_header header;
     cwi_mesh_build build;
+    cwi_face_colors faces;
     bool has[CWI_PLY_NOTHING + 1]; /* roles of the properties of 'vertex' that exist */
 } ply;
 
@@ -137,11 +139,17 @@ static void store_property(cw_mesh *mesh, size_t v, double point[3],
         mesh->labels[v] = number > 0 ? (uint32_t)fmin(number, UINT32_MAX) : 0;
 }
 
+static bool has_face_colors(const ply *p)
+{
+    return p->has[CWI_PLY_FACE_RED] && p->has[CWI_PLY_FACE_GREEN] && p->has[CWI_PLY_FACE_BLUE];
+}
+
 static cw_status read_element(ply *p, cwi_scan *s, const cwi_ply_element *e, bool is_vertex,
                               cw_mesh *mesh, cw_mesh_file *metadata, cw_error *err)
 {
     const size_t v = p->build.point_count;
     double point[3] = {0}, number = 0;
+    uint8_t color[4] = {255, 255, 255, 255}; /* of a face */
     cw_status st = CW_OK;
     for (size_t i = e->first; st == CW_OK && i < e->end; i++) {
         const cwi_ply_property *property = &p->header.properties[i];
@@ -152,7 +160,11 @@ static cw_status read_element(ply *p, cwi_scan *s, const cwi_ply_element *e, boo
         st = read_number(p, s, e, property->type, &number, err);
         if (st == CW_OK && is_vertex)
             store_property(mesh, v, point, property, number);
+        else if (property->role >= CWI_PLY_FACE_RED && property->role <= CWI_PLY_FACE_ALPHA)
+            color[property->role - CWI_PLY_FACE_RED] = to_color(number, property->type);
     }
+    if (st == CW_OK && has_face_colors(p)) /* of the triangles that this element adds */
+        st = cwi_color_faces(&p->faces, p->build.triangle_count, color, err);
     return st == CW_OK && is_vertex ? cwi_build_point(&p->build, point, err) : st;
 }
 
@@ -179,12 +191,20 @@ static const cwi_ply_element *find_element(const cwi_ply_header *h, const char *
     return NULL;
 }
 
+static bool is_color(cwi_ply_role role)
+{
+    return (role >= CWI_PLY_RED && role <= CWI_PLY_ALPHA) ||
+           (role >= CWI_PLY_FACE_RED && role <= CWI_PLY_FACE_ALPHA);
+}
+
 /* Finds the roles, each at most once: arrays have one place for each. */
 static cw_status find_roles(ply *p, cw_error *err)
 {
-    const cwi_ply_header *h = &p->header;
+    cwi_ply_header *h = &p->header;
     for (size_t i = 0; i < h->property_count; i++) {
-        const cwi_ply_role role = h->properties[i].role;
+        cwi_ply_role role = h->properties[i].role;
+        if (is_color(role) && p->has[role]) /* under another name: the first counts */
+            role = h->properties[i].role = CWI_PLY_NOTHING;
         if (role != CWI_PLY_NOTHING && p->has[role])
             return cwi_fail(err, CW_ERR_FORMAT,
                             "an element or a property of it is there twice in the header");
@@ -244,6 +264,8 @@ static cw_status read_body(ply *p, cw_mesh *mesh, cw_mesh_file *metadata, cw_err
         st = read_elements(p, &s, mesh, metadata, err);
     if (st == CW_OK)
         st = cwi_build_finish(&p->build, mesh, metadata, err);
+    if (st == CW_OK)
+        st = cwi_color_mesh(&p->faces, false, mesh, err);
     cwi_scan_close(&s);
     return st;
 }
@@ -253,7 +275,7 @@ cw_status cwi_ply_read(cwi_mesh_input *in, cw_mesh *mesh, cw_mesh_file *metadata
     ply *p = cwi_alloc_zeroed(1, sizeof *p);
     if (!p)
         return cwi_fail_memory(err);
-    p->build.in = in;
+    p->build.in = p->faces.in = in;
     cw_status st = cwi_ply_parse(&in->file, &p->header, metadata, err);
     if (st == CW_OK)
         st = find_roles(p, err);
@@ -261,6 +283,7 @@ cw_status cwi_ply_read(cwi_mesh_input *in, cw_mesh *mesh, cw_mesh_file *metadata
     if (st == CW_OK)
         st = read_body(p, mesh, metadata, err);
     cwi_build_free(&p->build);
+    cwi_face_colors_free(&p->faces);
     cwi_free(p);
     return st;
 }

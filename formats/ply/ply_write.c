@@ -3,6 +3,9 @@
 #include "core/base/status.h"
 #include "formats/ply/ply_format.h"
 
+#define COLOR_PROPERTIES                                                                       \
+    "property uchar red\nproperty uchar green\nproperty uchar blue\nproperty uchar alpha\n"
+
 static unsigned char *encode_vertex(const cwi_part *part, size_t v, unsigned char *to)
 {
     const cw_mesh *mesh = &part->mesh;
@@ -29,6 +32,10 @@ static unsigned char *encode_face(const cwi_part *part, size_t t, unsigned char 
     *to++ = 3;
     for (int c = 0; c < 3; c++)
         to = cwi_put_u32(to, (uint32_t)cwi_corner_number(part, t, c));
+    if (part->face_colors) {
+        memcpy(to, part->face_colors + 4 * t, 4);
+        to += 4;
+    }
     for (size_t s = 0; part->sides && s < 2; s++)
         to = cwi_put_u32(to, part->sides[2 * t + s]);
     return to;
@@ -36,11 +43,12 @@ static unsigned char *encode_face(const cwi_part *part, size_t t, unsigned char 
 
 static unsigned char *encode_text_face(const cwi_part *part, size_t t, unsigned char *to)
 {
-    to = cwi_put_face_line(part, t, to);
-    if (!part->sides)
-        return to;
-    to = cwi_put_integer(cwi_put_text(to - 1, " "), part->sides[2 * t]);
-    return cwi_put_text(cwi_put_integer(cwi_put_text(to, " "), part->sides[2 * t + 1]), "\n");
+    to = cwi_put_face_line(part, t, to) - 1; /* without the line end */
+    for (size_t c = 0; part->face_colors && c < 4; c++)
+        to = cwi_put_integer(cwi_put_text(to, " "), part->face_colors[4 * t + c]);
+    for (size_t s = 0; part->sides && s < 2; s++)
+        to = cwi_put_integer(cwi_put_text(to, " "), part->sides[2 * t + s]);
+    return cwi_put_text(to, "\n");
 }
 
 static unsigned char *encode_text_vertex(const cwi_part *part, size_t v, unsigned char *to)
@@ -73,19 +81,17 @@ static cw_status write_header(const cwi_parts *parts, const cwi_mesh_output *out
         "ply\nformat %s 1.0\n"
         "comment cubewright %s\ncomment object %s\ncomment unit %s\ncomment frame %s\n%s%s"
         "element vertex %ju\nproperty float x\nproperty float y\nproperty float z\n%s%s%s%s"
-        "element face %ju\nproperty list uchar %s vertex_indices\n%send_header\n",
+        "element face %ju\nproperty list uchar %s vertex_indices\n%s%send_header\n",
         out->text ? "ascii" : "binary_little_endian", CW_VERSION, out->name,
         cw_unit_name(out->axes->unit), out->axes->ras ? "RAS" : "LPS",
         out->axes->y_up ? "comment up Y\n" : "", origin, (uintmax_t)parts->vertices,
         has & CW_KEEPS_NORMALS ? "property float nx\nproperty float ny\nproperty float nz\n"
                                : "",
-        has & CW_KEEPS_COLORS
-            ? "property uchar red\nproperty uchar green\nproperty uchar blue\n"
-              "property uchar alpha\n"
-            : "",
+        has & CW_KEEPS_COLORS ? COLOR_PROPERTIES : "",
         has & CW_KEEPS_SCALARS ? "property float scalar\n" : "",
         has & CW_KEEPS_LABELS ? "property uint label\n" : "", (uintmax_t)parts->triangles,
-        index, parts->items[0].sides ? "property uint label_0\nproperty uint label_1\n" : "");
+        index, has & CW_KEEPS_FACE_COLORS ? COLOR_PROPERTIES : "",
+        parts->items[0].sides ? "property uint label_0\nproperty uint label_1\n" : "");
 }
 
 cw_status cwi_ply_write(const cwi_parts *parts, cwi_mesh_output *out, cw_error *err)

@@ -30,8 +30,8 @@ const cwi_format_driver cwi_format_vtp = {
     .extensions = ".vtp",
     .about = "VTK surface as XML, LPS millimetres",
     .lost = "affine; places beyond single precision, unless local",
-    .keeps = CW_KEEPS_SHARING | CW_KEEPS_NORMALS | CW_KEEPS_COLORS | CW_KEEPS_SCALARS |
-             CW_KEEPS_LABELS,
+    .keeps = CW_KEEPS_SHARING | CW_KEEPS_NORMALS | CW_KEEPS_COLORS | CW_KEEPS_OPACITY |
+             CW_KEEPS_SCALARS | CW_KEEPS_LABELS | CW_KEEPS_FACE_COLORS,
     .mesh = {.sniff = cwi_vtp_sniff, .read = cwi_vtp_read},
     .write = {.write = cwi_vtp_write, .spools = true, .sides = true},
 };

@@ -3,6 +3,7 @@
 #include "core/base/memory.h"
 #include "core/base/status.h"
 #include "formats/cells/grid_arrays.h"
+#include "formats/mesh/face_colors.h"
 #include "formats/vtk/vtk_formats.h"
 #include "formats/vtk/vtk_xml.h"
 
@@ -24,6 +25,7 @@ typedef enum role {
     COLORS,
     SCALARS,
     LABELS,
+    CELL_COLORS, /* of CellData: vertices, lines, polygons, strips */
     ROLE_COUNT
 } role;
 
@@ -34,12 +36,15 @@ typedef struct vtp {
     cwi_vtk_xml file;
     cwi_vtk_array arrays[ROLE_COUNT];
     bool has[ROLE_COUNT];
-    cwi_vtk_array *open; /* the next tag ends its text; NULL: none */
-    int64_t points, polygons, strips;
+    cwi_vtk_array *open;                       /* the next tag ends its text; NULL: none */
+    int64_t points, polygons, strips, skipped; /* skipped: vertices and lines */
     size_t pieces;
     char normals[CWI_WORD_BYTES], scalars[CWI_WORD_BYTES]; /* names stated by PointData */
+    char cell_scalars[CWI_WORD_BYTES];                     /* name stated by CellData */
     bool ours;
     cwi_mesh_build build;
+    cwi_tuples cell_colors; /* of all cells; empty: none */
+    cwi_face_colors faces;
 } vtp;
 
 bool cwi_vtp_sniff(const unsigned char *head, size_t size, uint64_t file_size)
@@ -76,7 +81,8 @@ static cw_status start_piece(void *user, cwi_xml *x, cwi_attributes a, cw_error 
     cw_status st = CW_OK;
     for (size_t i = 0; i < sizeof counts / sizeof *counts && st == CW_OK; i++)
         st = cwi_vtk_xml_integer(a, counts[i].name, 0, INT64_MAX / 4, counts[i].count, err);
-    v->metadata->skipped = (size_t)(skipped[0] + skipped[1]);
+    v->skipped = skipped[0] + skipped[1];
+    v->metadata->skipped = (size_t)v->skipped;
     return st;
 }
 
@@ -87,6 +93,15 @@ static cw_status start_point_data(void *user, cwi_xml *x, cwi_attributes a, cw_e
     (void)x, (void)err;
     snprintf(v->normals, sizeof v->normals, "%s", normals ? normals : "");
     snprintf(v->scalars, sizeof v->scalars, "%s", scalars ? scalars : "");
+    return CW_OK;
+}
+
+static cw_status start_cell_data(void *user, cwi_xml *x, cwi_attributes a, cw_error *err)
+{
+    vtp *v = user;
+    const char *scalars = cwi_attribute(a, "Scalars");
+    (void)x, (void)err;
+    snprintf(v->cell_scalars, sizeof v->cell_scalars, "%s", scalars ? scalars : "");
     return CW_OK;
 }
 
@@ -166,6 +181,17 @@ static cw_status start_point_array(void *user, cwi_xml *x, cwi_attributes a, cw_
     return keep_array(v, x, r, &array, named);
 }
 
+static cw_status start_cell_array(void *user, cwi_xml *x, cwi_attributes a, cw_error *err)
+{
+    vtp *v = user;
+    cwi_vtk_array array;
+    cw_status st = cwi_vtk_xml_array(&array, a, err);
+    if (st != CW_OK || role_of(&array) != COLORS)
+        return st;
+    const bool named = *v->cell_scalars && strcmp(array.name, v->cell_scalars) == 0;
+    return keep_array(v, x, CELL_COLORS, &array, named);
+}
+
 static cw_status start_appended(void *user, cwi_xml *x, cwi_attributes a, cw_error *err)
 {
     vtp *v = user;
@@ -198,6 +224,8 @@ typedef enum element {
     E_PIECE,
     E_POINT_DATA,
     E_POINT_ARRAY,
+    E_CELL_DATA,
+    E_CELL_ARRAY,
     E_POINTS,
     E_POINTS_ARRAY,
     E_POLYS,
@@ -214,6 +242,8 @@ static const cwi_xml_element elements[ELEMENT_COUNT] = {
     [E_PIECE] = {"Piece", E_DATA, start_piece, NULL},
     [E_POINT_DATA] = {"PointData", E_PIECE, start_point_data, NULL},
     [E_POINT_ARRAY] = {"DataArray", E_POINT_DATA, start_point_array, NULL},
+    [E_CELL_DATA] = {"CellData", E_PIECE, start_cell_data, NULL},
+    [E_CELL_ARRAY] = {"DataArray", E_CELL_DATA, start_cell_array, NULL},
     [E_POINTS] = {"Points", E_PIECE, NULL, NULL},
     [E_POINTS_ARRAY] = {"DataArray", E_POINTS, start_points, NULL},
     [E_POLYS] = {"Polys", E_PIECE, NULL, NULL},
@@ -326,6 +356,26 @@ static cw_status add_corners(vtp *v, const cwi_tuples *corners, size_t from, siz
     return st;
 }
 
+/* Reads the colours of cells. */
+static cw_status read_cell_colors(vtp *v, cw_error *err)
+{
+    const int64_t cells = v->skipped + v->polygons + v->strips;
+    return v->has[CELL_COLORS]
+               ? load_tuples(v, CELL_COLORS, "cells", (uint64_t)cells, &v->cell_colors, err)
+               : CW_OK;
+}
+
+/* Gives the triangles of the last cell its colour. */
+static cw_status color_cell(vtp *v, size_t cell, cw_error *err)
+{
+    uint8_t color[4] = {255, 255, 255, 255};
+    if (!v->cell_colors.count)
+        return CW_OK;
+    for (size_t c = 0; c < v->arrays[CELL_COLORS].components; c++)
+        color[c] = (uint8_t)cwi_tuples_real(&v->cell_colors, cell, c);
+    return cwi_color_faces(&v->faces, v->build.triangle_count, color, err);
+}
+
 /* Checks the ends: they must not decrease; the last one is the number of corners. */
 static cw_status check_ends(const cwi_tuples *ends, const char *field, cw_error *err)
 {
@@ -344,6 +394,7 @@ static cw_status check_ends(const cwi_tuples *ends, const char *field, cw_error 
 static cw_status read_faces(vtp *v, role first, const char *field, int64_t count, cw_error *err)
 {
     const bool strip = first == STRIPS;
+    const size_t before = (size_t)(v->skipped + (strip ? v->polygons : 0)); /* cells */
     cwi_tuples ends = {0}, corners = {0};
     cw_status st = load_tuples(v, first + 1, field, (uint64_t)count, &ends, err);
     if (st == CW_OK)
@@ -357,6 +408,8 @@ static cw_status read_faces(vtp *v, role first, const char *field, int64_t count
     for (size_t i = 0, from = 0; i < ends.count && st == CW_OK; i++) {
         const size_t to = (size_t)cwi_tuples_whole(&ends, i);
         st = add_corners(v, &corners, from, to, strip, err);
+        if (st == CW_OK)
+            st = color_cell(v, before + i, err);
         from = to;
     }
     drop_tuples(v, &ends);
@@ -376,10 +429,15 @@ static cw_status read_arrays(vtp *v, cw_error *err)
     if (st == CW_OK)
         st = read_attribute(v, LABELS, &v->mesh->labels, sizeof(uint32_t), err);
     if (st == CW_OK)
+        st = read_cell_colors(v, err);
+    if (st == CW_OK)
         st = read_faces(v, POLYGONS, "NumberOfPolys", v->polygons, err);
     if (st == CW_OK)
         st = read_faces(v, STRIPS, "NumberOfStrips", v->strips, err);
-    return st == CW_OK ? cwi_build_finish(&v->build, v->mesh, v->metadata, err) : st;
+    drop_tuples(v, &v->cell_colors);
+    if (st == CW_OK)
+        st = cwi_build_finish(&v->build, v->mesh, v->metadata, err);
+    return st == CW_OK ? cwi_color_mesh(&v->faces, false, v->mesh, err) : st;
 }
 
 cw_status cwi_vtp_read(cwi_mesh_input *in, cw_mesh *mesh, cw_mesh_file *metadata, cw_error *err)
@@ -387,7 +445,7 @@ cw_status cwi_vtp_read(cwi_mesh_input *in, cw_mesh *mesh, cw_mesh_file *metadata
     vtp *v = cwi_alloc_zeroed(1, sizeof *v);
     if (!v)
         return cwi_fail_memory(err);
-    v->in = v->build.in = in;
+    v->in = v->build.in = v->faces.in = in;
     v->mesh = mesh;
     v->metadata = metadata;
     cw_status st = cwi_xml_read_file(&rules, v, &in->file, err);
@@ -398,6 +456,7 @@ cw_status cwi_vtp_read(cwi_mesh_input *in, cw_mesh *mesh, cw_mesh_file *metadata
     if (st == CW_OK)
         st = read_arrays(v, err);
     cwi_build_free(&v->build);
+    cwi_face_colors_free(&v->faces);
     cwi_free(v);
     return st;
 }

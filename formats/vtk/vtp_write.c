@@ -56,6 +56,12 @@ static unsigned char *encode_sides(const cwi_part *part, size_t t, unsigned char
     return cwi_put_u32(cwi_put_u32(to, part->sides[2 * t]), part->sides[2 * t + 1]);
 }
 
+static unsigned char *encode_face_color(const cwi_part *part, size_t t, unsigned char *to)
+{
+    memcpy(to, part->face_colors + 4 * t, 4);
+    return to + 4;
+}
+
 /* Encodes the end of a polygon's corners among all corners. */
 static unsigned char *encode_end(const cwi_part *part, size_t t, unsigned char *to)
 {
@@ -97,10 +103,14 @@ static const array arrays[] = {
     {0, NARROW, "Int32", "offsets", 1, 4, true, encode_end, "", "</Polys>\n"},
     {0, WIDE, "Int64", "connectivity", 1, 24, true, encode_wide_corners, "<Polys>\n", ""},
     {0, WIDE, "Int64", "offsets", 1, 8, true, encode_wide_end, "", "</Polys>\n"},
-    {SIDES, ANY, "UInt32", "BoundaryLabels", 2, 8, true, encode_sides, "<CellData>\n",
-     "</CellData>\n"},
+    {SIDES, ANY, "UInt32", "BoundaryLabels", 2, 8, true, encode_sides, "", ""},
+    {CW_KEEPS_FACE_COLORS, ANY, "UInt8", "RGBA", 4, 4, true, encode_face_color, "", ""},
 };
-enum { ARRAY_COUNT = sizeof arrays / sizeof *arrays, OFFSET_DIGITS = 20 };
+enum {
+    ARRAY_COUNT = sizeof arrays / sizeof *arrays,
+    FIRST_OF_CELLS = ARRAY_COUNT - 2,
+    OFFSET_DIGITS = 20
+};
 
 typedef struct vtp {
     cwi_mesh_output *out;
@@ -143,6 +153,11 @@ static const char *shown_array(const vtp *f)
                                    : "";
 }
 
+static bool has_cell_data(const vtp *f)
+{
+    return f->has[FIRST_OF_CELLS] || f->has[FIRST_OF_CELLS + 1];
+}
+
 static cw_status write_head(vtp *f, cw_error *err)
 {
     const cwi_mesh_output *out = f->out;
@@ -158,9 +173,14 @@ static cw_status write_head(vtp *f, cw_error *err)
         "NumberOfStrips=\"0\" NumberOfPolys=\"%ju\">\n<PointData%s%s>\n",
         CW_VERSION, axes, origin, (uintmax_t)f->parts->vertices, (uintmax_t)f->parts->triangles,
         f->has[0] ? " Normals=\"Normals\"" : "", shown_array(f));
-    for (int i = 0; i < ARRAY_COUNT && st == CW_OK; i++)
-        if (f->has[i])
+    for (int i = 0; i < ARRAY_COUNT && st == CW_OK; i++) {
+        if (i == FIRST_OF_CELLS && has_cell_data(f))
+            st = cwi_outfile_printf(out->file, err, "<CellData>\n");
+        if (st == CW_OK && f->has[i])
             st = declare_array(f, i, err);
+    }
+    if (st == CW_OK && has_cell_data(f))
+        st = cwi_outfile_printf(out->file, err, "</CellData>\n");
     return st == CW_OK ? cwi_outfile_printf(out->file, err,
                                             "</Piece>\n</PolyData>\n"
                                             "<AppendedData encoding=\"raw\">\n_")

@@ -375,6 +375,10 @@ typedef struct cw_mesh_file {
                         positions, neither of which changes the mesh; "": none found */
     size_t crossing; /* of the polygons: those that cross themselves, whose triangles overlap */
 
+    /* Of any format: features that the mesh has no place for, such as "textures, texture coordinates"; "": none
+     * that are known. */
+    char left_out[128];
+
     /* An STL whose header counts expected_triangles, and whose size tells another number, which was
      * taken. */
     bool miscounted;
@@ -404,13 +408,17 @@ typedef struct cw_mesh_file {
  *
  * glTF is in metres, +Y up: its scene is turned to LPS millimetres, (x, y, z) to (1000 x, -1000
  * z, 1000 y). Every placement of a mesh by a node is read. A mirrored mesh has its winding
- * reversed, so that triangles stay counter-clockwise from outside. Materials, skins, morph
+ * reversed, so that triangles stay counter-clockwise from outside. Skins, morph
  * targets and animations are ignored, and images are never read. A node with a scale of 0 along
  * all axes is hidden, and left out.
  *
  * From 3MF all objects of the build are placed, with components, in the unit that the file
- * names. A mirrored object also has its winding reversed. Colours of 3MF are kept when no
- * vertex has two.
+ * names. A mirrored object also has its winding reversed.
+ *
+ * Colours of materials (glTF, 3MF, .mtl beside OBJ) become those of vertices where no vertex gets
+ * two; else, and where PLY, OFF or VTP colour faces, they are the attribute CW_FACE_COLORS. In glTF
+ * they are multiplied with COLOR_0; a base colour of white, or of 0.8 of it, counts as none. Labels that
+ * our glTF states are those of vertices, if each part has one.
  *
  * mesh     filled on success, emptied on failure; free it with cw_mesh_free()
  * file     filled on success; may be NULL
@@ -457,6 +465,7 @@ typedef struct cw_part {
  *
  * parts    set to an array of *count, which owns the meshes: free it with cw_parts_free().
  *          Names are NULL where the file has none; bytes other than printable UTF-8 become '_'.
+ *          Labels are those that our glTF states, with their colour and codes; else NULL
  * file     as in cw_mesh_read()
  * Returns  as cw_mesh_read()
  * Cost     that of cw_mesh_read() and, if there are several, as much memory once more */
@@ -562,8 +571,9 @@ CW_NODISCARD CW_API cw_status cw_mesh_write(const char *path, const cw_mesh *mes
  * parts are joined into one mesh, with the arrays that all of them have. Parts without
  * triangles are left out. A local file has the origin of the first part.
  *
- * The label of a part colours it: by a material in glTF, by a colour group in 3MF. OBJ gets a
- * second file for that, with the path's stem and the extension .mtl. In the extras of a glTF
+ * The label of a part colours it, or the one colour that all its vertices have: by a material in glTF,
+ * by a colour group in 3MF. OBJ gets a second file for that and for colours of faces, with the path's
+ * stem and the extension .mtl. In the extras of a glTF
  * node are the label's value, colour and codes. In the other formats its value and colour are
  * those of the vertices, if all parts have them.
  *
@@ -695,9 +705,12 @@ typedef enum cw_keeps {
     CW_KEEPS_SCALARS = 16,
     CW_KEEPS_LABELS = 32,
     CW_KEEPS_AFFINE = 64,
-    CW_KEEPS_PARTS = 128,      /* several meshes, with names */
-    CW_KEEPS_ATTRIBUTES = 256, /* those of cw_mesh.attributes: no format so far */
-    CW_KEEPS_ALL = 511
+    CW_KEEPS_PARTS = 128, /* several meshes, with names */
+    CW_KEEPS_ATTRIBUTES =
+        256, /* those of cw_mesh.attributes but CW_FACE_COLORS: no format so far */
+    CW_KEEPS_FACE_COLORS = 512, /* CW_FACE_COLORS */
+    CW_KEEPS_OPACITY = 1024,    /* of vertices, beside their colours */
+    CW_KEEPS_ALL = 2047
 } cw_keeps;
 
 /* A format that this build or another one reads or writes. */

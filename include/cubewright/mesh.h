@@ -37,6 +37,11 @@ typedef struct cw_attribute {
     void *data;                     /* elements x components; the mesh frees it */
 } cw_attribute;
 
+/* The name of the attribute with colours of triangles: CW_ON_TRIANGLES, CW_U8, 4 components, sRGB and
+ * linear alpha. Readers make it where a file colours triangles and vertices would get two colours; writers
+ * know it. */
+#define CW_FACE_COLORS "face_colors"
+
 /* Vertices and triangles. A zeroed struct is a valid empty mesh. Zero it before a call fills it: the
  * version says which members it has.
  *

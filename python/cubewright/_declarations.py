@@ -47,6 +47,7 @@ CW_MAX_CLIPS = 12
 CW_MAX_SLICES = 4
 CW_CAP_ANGLE_DEG = 160.0
 CW_EXTRACT_MAX_SNAP = 0.5
+CW_FACE_COLORS = 'face_colors'
 CW_FEM_MAX_ASPECT = 10.0
 CW_FEM_MIN_ANGLE_DEG = 10.0
 CW_NEEDLE_RATIO = 20.0
@@ -246,7 +247,9 @@ class cw_keeps(enum.IntEnum):
     CW_KEEPS_AFFINE = 64
     CW_KEEPS_PARTS = 128
     CW_KEEPS_ATTRIBUTES = 256
-    CW_KEEPS_ALL = 511
+    CW_KEEPS_FACE_COLORS = 512
+    CW_KEEPS_OPACITY = 1024
+    CW_KEEPS_ALL = 2047
 
 
 class cw_mode(enum.IntEnum):
@@ -1841,6 +1844,7 @@ class cw_mesh_file(Structure):
     expected_triangles: int
     fault: Any
     crossing: int
+    left_out: Any
     miscounted: bool
     attribute_bytes: int
     not_applied: Any
@@ -1865,6 +1869,7 @@ cw_mesh_file._fields_ = [
     ("expected_triangles", c_size_t),
     ("fault", c_char * 160),
     ("crossing", c_size_t),
+    ("left_out", c_char * 128),
     ("miscounted", c_bool),
     ("attribute_bytes", c_uint64),
     ("not_applied", c_char * 160),

@@ -90,7 +90,41 @@ static void set_attributes(const cwi_cut *c, size_t n, cw_mesh *out)
         set_normal(c, s, !c->desc.leave_open, out->normals + 3 * n);
 }
 
-/* Gives triangles the attributes of those that they are parts of; those of the section keep 0. */
+/* Gives the triangles of the section the colours of triangles beside them, by common vertices.
+ * near: room for a triangle of each vertex; UINT32_MAX: none */
+static void color_section(const cwi_cut *c, const cw_attribute *row, uint32_t *near,
+                          cw_mesh *out)
+{
+    const size_t size = cwi_attribute_bytes(row);
+    char *colors = row->data;
+    memset(near, 0xff, out->vertex_count * sizeof *near);
+    for (size_t i = 0; i < 3 * out->triangle_count; i++)
+        if (c->parents[i / 3] != UINT32_MAX)
+            near[out->triangles[i]] = (uint32_t)(i / 3);
+    for (size_t i = 0; i < 3 * out->triangle_count; i++) {
+        const uint32_t beside = near[out->triangles[i]];
+        if (c->parents[i / 3] == UINT32_MAX && beside != UINT32_MAX)
+            memcpy(colors + i / 3 * size, colors + beside * size, size);
+    }
+}
+
+static cw_status color_sections(const cwi_cut *c, cw_mesh *out, cw_error *err)
+{
+    uint32_t *near = NULL;
+    for (size_t n = 0; n < out->attribute_count; n++) {
+        const cw_attribute *row = &out->attributes[n];
+        if (row->on != CW_ON_TRIANGLES || row->interpolation != CW_INTERPOLATE_COLOR)
+            continue;
+        if (!near && !(near = cwi_alloc_array(out->vertex_count, sizeof *near)))
+            return cwi_fail_memory(err);
+        color_section(c, row, near, out);
+    }
+    cwi_free(near);
+    return CW_OK;
+}
+
+/* Gives triangles the attributes of those that they are parts of; those of the section keep 0, but for
+ * colours. */
 static void set_triangle_attributes(const cwi_cut *c, cw_mesh *out)
 {
     for (size_t t = 0; t < out->triangle_count; t++) {
@@ -119,8 +153,9 @@ static cw_status make_result(const cwi_cut *c, cw_mesh *out, cw_error *err)
         if (c->sources[n].a != UINT32_MAX)
             set_attributes(c, n, out);
     set_triangle_attributes(c, out);
-    if (!c->has_unused)
-        return CW_OK;
+    st = color_sections(c, out, err);
+    if (st != CW_OK || !c->has_unused)
+        return st;
     bool *marked = cwi_alloc_zeroed(out->triangle_count, sizeof *marked);
     st = marked ? cwi_mesh_drop_marked(out, marked, err) : cwi_fail_memory(err);
     cwi_free(marked);

@@ -253,13 +253,14 @@ static void indices_are_short_as_long_as_they_may_be(void **state)
     }
 }
 
+/* Eight bits are enough for these, so that more would be waste. */
 static void colours_become_linear_and_translucent_ones_blend(void **state)
 {
     (void)state;
     static const uint8_t srgb[4][4] = {
-        {0, 255, 128, 255}, {1, 10, 64, 255}, {188, 200, 54, 255}, {99, 98, 97, 255}};
+        {0, 255, 128, 255}, {99, 200, 158, 255}, {188, 200, 158, 255}, {99, 98, 96, 255}};
     static const uint8_t linear[4][4] = {
-        {0, 255, 55, 255}, {0, 1, 13, 255}, {128, 147, 9, 255}, {32, 31, 30, 255}};
+        {0, 255, 55, 255}, {32, 147, 87, 255}, {128, 147, 87, 255}, {32, 31, 30, 255}};
     cw_mesh mesh = {0};
     glb g;
     test_make_tetrahedron(&mesh);
@@ -276,6 +277,38 @@ static void colours_become_linear_and_translucent_ones_blend(void **state)
     assert_int_equal(g.bin[g.bin_size - 16 + 7], 100);
     assert_non_null(strstr(g.json, "\"alphaMode\":\"BLEND\""));
     glb_free(&g);
+    cw_mesh_free(&mesh);
+}
+
+/* 8 bits of linear light have one step for the sRGB bytes 7 to 18. */
+static void dark_colours_take_sixteen_bits(void **state)
+{
+    (void)state;
+    static const uint8_t srgb[4][4] = {
+        {0, 1, 2, 255}, {3, 5, 8, 254}, {10, 13, 14, 255}, {20, 255, 61, 0}};
+    cw_mesh mesh = {0}, back;
+    cw_error err = {0};
+    glb g;
+    test_make_tetrahedron(&mesh);
+    mesh.colors = malloc(16);
+    assert_non_null(mesh.colors);
+    memcpy(mesh.colors, srgb, 16);
+    write_glb(&mesh, &g);
+    assert_non_null(strstr(g.json, "\"componentType\":5123,\"count\":4,\"normalized\":true"));
+    assert_int_equal(g.bin[g.bin_size - 8] | g.bin[g.bin_size - 7] << 8, 458); /* of 20 */
+    glb_free(&g);
+    for (int way = 0; way <= CW_COMPRESS_MESHOPT; way += CW_COMPRESS_MESHOPT) {
+        const cw_write_desc desc = {.compression = (cw_compression)way};
+        assert_ok(cw_mesh_write(test_path("dark.glb"), &mesh, &desc, &err), err);
+        assert_ok(cw_mesh_read(test_path("dark.glb"), NULL, &back, NULL, &err), err);
+        for (size_t v = 0; v < 4; v++) {
+            bool found = false;
+            for (size_t n = 0; n < 4; n++)
+                found = found || memcmp(back.colors + 4 * n, srgb[v], 4) == 0;
+            assert_true(found);
+        }
+        cw_mesh_free(&back);
+    }
     cw_mesh_free(&mesh);
 }
 
@@ -449,6 +482,7 @@ int main(void)
         CASE(a_local_scene_is_not_moved_but_tells_its_origin),
         CASE(indices_are_short_as_long_as_they_may_be),
         CASE(colours_become_linear_and_translucent_ones_blend),
+        CASE(dark_colours_take_sixteen_bits),
         CASE(provenance_stands_in_the_asset),
         CASE(extras_name_frame_unit_and_affine),
         CASE(the_same_mesh_gives_the_same_bytes),

@@ -455,7 +455,7 @@ static void a_scene_crosses_between_processes(void **state)
     cwi_gltf_buffer buffers[2] = {{(char *)(uintptr_t)uris[0], 7}, {NULL, 0}};
     cwi_gltf_accessor accessors[1] = {{.numbers = 3, .count = 9}};
     cwi_gltf_primitive primitives[2] = {{.mode = 4}, {.mode = 5}};
-    cwi_gltf_mesh meshes[1] = {{0, 2}};
+    cwi_gltf_mesh meshes[1] = {{.first = 0, .end = 2}};
     cwi_gltf_node nodes[2] = {{.first = 0, .end = 1}, {.first = 1, .end = 1}};
     int children[1] = {1}, roots[1] = {0};
     const cwi_gltf_scene scene = {.buffers = buffers,

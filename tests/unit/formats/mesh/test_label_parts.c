@@ -85,6 +85,7 @@ static void gltf_has_a_material_a_label(void **state)
                        "\"10200004\"}");
     free(text);
     p.cube.colors = calloc(p.cube.vertex_count, 4); /* colours of vertices go before */
+    p.cube.colors[0] = 1;
     text = write_pair(&p, "a.gltf", NULL);
     assert_holds(text, "\"name\":\"surface\"");
     free(text);

@@ -114,7 +114,8 @@ static void make_file(const dialect *d, const char *real, const char *whole, byt
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++)
         add_array(file, &appended, d, &arrays[i]);
     add_text(file, "</PointData><CellData><DataArray type='UInt8' Name='RGB' "
-                   "NumberOfComponents='3'>1 2 3</DataArray></CellData><Points>");
+                   "format='ascii' NumberOfComponents='3'>1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 "
+                   "16 17 18 19 20 21</DataArray></CellData><Points>");
     const array positions = real_array("DataArray", real, 3, points, 18);
     const array corners = whole_array("DataArray Name='connectivity'", whole, polygons, 9);
     const array ends = whole_array("DataArray Name='offsets'", whole, polygon_ends, 3);
