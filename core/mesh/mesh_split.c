@@ -112,7 +112,8 @@ static uint32_t find_around(cavity_ray *r)
 {
     const cwi_components *c = &r->s->c;
     uint32_t found = NONE;
-    qsort(r->crossings, r->count, sizeof *r->crossings, compare_crossings);
+    if (r->count > 1)
+        qsort(r->crossings, r->count, sizeof *r->crossings, compare_crossings);
     for (size_t n = 0; n < r->count;) {
         const uint32_t set = r->crossings[n].set;
         int winding = 0;
@@ -231,7 +232,8 @@ static cw_status rank_solids(splitting *s, cw_error *err)
     for (uint32_t n = 0; n < s->c.count; n++)
         if (s->owner[n] == n)
             s->solids[s->solid_count++] = (ranked_solid){s->c.sums[n], n};
-    qsort(s->solids, s->solid_count, sizeof *s->solids, compare_solids);
+    if (s->solid_count > 1)
+        qsort(s->solids, s->solid_count, sizeof *s->solids, compare_solids);
     for (uint32_t n = 0; n < s->solid_count; n++)
         number[s->solids[n].set] = n;
     for (size_t n = 0; n < s->c.count; n++)
