@@ -149,6 +149,7 @@ void Contact::build(const Surface &surface)
     }
     nearby = std::make_unique<Nearby>(faces, all, marks.size());
     built = live = faces.size();
+    build_fans(surface);
 }
 
 namespace
@@ -335,6 +336,8 @@ Contact::meets_others_avx2(const Surface &surface, const OneRing &ring, const Bo
 
 bool Contact::find_others(const Surface &surface, const OneRing &ring, const Box &around) const
 {
+    if (!fans.empty() && meets_fans(surface, ring, around))
+        return true;
 #ifdef __x86_64__
     if (has_avx2)
         return meets_others_avx2(surface, ring, around);
@@ -367,17 +370,148 @@ bool Contact::arises(Surface &surface, const OneRing &ring)
     return found;
 }
 
+// --- wide fans -----------------------------------------------------------------------------
+
+// The box of the directions in which the fan's hub sees a triangle.
+Box Contact::direction(const Fan &fan, const uint32_t id[3], const Vec at[3])
+{
+    const float *const corner[3] = {at[0].data(), at[1].data(), at[2].data()};
+    const bool has_hub = id[0] == fan.hub || id[1] == fan.hub || id[2] == fan.hub;
+    Box box;
+    cwi_direction_box(fan.center.data(), corner, has_hub, box.side);
+    return box;
+}
+
+Box Contact::direction(const Fan &fan, const OneRing &ring, const RingTriangle &s)
+{
+    const uint32_t id[3] = {ring.vertex, s.a, s.b};
+    const Vec at[3] = {ring.position, s.pa, s.pb};
+    return direction(fan, id, at);
+}
+
+// Takes the triangles of wide fans out of the tree, and sorts those of each by their directions.
+void Contact::build_fans(const Surface &surface)
+{
+    struct Faces {
+        const Surface *surface;
+        size_t interior_count;
+    } faces = {&surface, interior_count};
+    cwi_wide_fans found;
+    cw_error err;
+    const cw_status st = cwi_wide_fans_find(
+        &found, surface.n_vertices(), corners.data(), marks.size(),
+        [](const void *context, size_t face) {
+            const auto *f = static_cast<const Faces *>(context);
+            return face < f->interior_count &&
+                   f->surface->status(FaceHandle(int(face))).deleted();
+        },
+        &faces, &err);
+    fans.clear();
+    fan_of.clear();
+    if (st == CW_OK && found.count)
+        fan_of.assign(found.fan_of, found.fan_of + marks.size());
+    for (size_t f = 0; f < found.count && st == CW_OK; f++) {
+        Fan fan = {found.hubs[f], point(surface, found.hubs[f]), Box(), {}, nullptr};
+        fan.faces.assign(found.triangles + found.first[f],
+                         found.triangles + found.first[f + 1]);
+        std::vector<Box> boxes;
+        for (const uint32_t face : fan.faces) {
+            Vec at[3];
+            for (size_t k = 0; k < 3; k++) {
+                at[k] = point(surface, corners[3 * size_t(face) + k]);
+                fan.around.add(at[k]);
+            }
+            boxes.push_back(direction(fan, &corners[3 * size_t(face)], at));
+            nearby->remove(face);
+        }
+        fan.directions = std::make_unique<Nearby>(fan.faces, boxes, marks.size());
+        fans.push_back(std::move(fan));
+    }
+    cwi_wide_fans_free(&found);
+    if (st != CW_OK)
+        throw std::bad_alloc();
+    if (!fans.empty())
+        nearby->shrink();
+}
+
+// Whether a ring meets triangles of fans. All those of a fan whose hub is an end of the edge are in
+// the ring.
+bool Contact::meets_fans(const Surface &surface, const OneRing &ring, const Box &around) const
+{
+    for (const Fan &fan : fans) {
+        if (!fan.directions || !fan.around.meets(around))
+            continue;
+        for (const RingTriangle &s : ring.triangles) {
+            const Box seen = direction(fan, ring, s);
+            const bool found = fan.directions->any(seen, [&](uint32_t face, const float *) {
+                if (marks[face] == mark)
+                    return false;
+                Box box;
+                for (size_t k = 0; k < 3; k++)
+                    box.add(point(surface, corners[3 * size_t(face) + k]));
+                return meets(surface, ring, face, box.side);
+            });
+            if (found)
+                return true;
+        }
+    }
+    return false;
+}
+
+// Gives the triangles of a fan back to the tree: its hub moves.
+void Contact::release_fan(const Surface &surface, uint32_t fan)
+{
+    for (const uint32_t face : fans[fan].faces) {
+        if (fan_of[face] != fan)
+            continue; // it is gone
+        fan_of[face] = CWI_NO_FAN;
+        Box box;
+        for (size_t k = 0; k < 3; k++)
+            box.add(point(surface, corners[3 * size_t(face) + k]));
+        nearby->move(face, box);
+    }
+    fans[fan].directions = nullptr;
+}
+
+void Contact::remove(uint32_t face)
+{
+    if (fan_of.empty() || fan_of[face] == CWI_NO_FAN) {
+        nearby->remove(face);
+        return;
+    }
+    fans[fan_of[face]].directions->remove(face);
+    fan_of[face] = CWI_NO_FAN;
+}
+
+void Contact::move(const OneRing &ring, const RingTriangle &moved)
+{
+    const Box box = ring.box(moved);
+    if (fan_of.empty() || fan_of[moved.face] == CWI_NO_FAN) {
+        nearby->move(moved.face, box);
+        return;
+    }
+    Fan &fan = fans[fan_of[moved.face]];
+    fan.directions->move(moved.face, direction(fan, ring, moved));
+    fan.around.add(&box.side[0]);
+    fan.around.add(&box.side[3]);
+}
+
 // Moves the triangles of a ring in the tree, and builds the tree again when few of them are
 // left: else most boxes would be empty.
 void Contact::change(const Surface &surface, const OneRing &ring)
 {
+    for (const RingTriangle &s : ring.triangles) {
+        const uint32_t fan = fan_of.empty() ? CWI_NO_FAN : fan_of[s.face];
+        if (fan != CWI_NO_FAN && fans[fan].hub != s.a && fans[fan].hub != s.b)
+            release_fan(surface, fan);
+    }
     for (uint32_t f : ring.gone)
-        nearby->remove(f);
+        remove(f);
     for (size_t i = 0; i < ring.triangles.size(); i++) {
         const RingTriangle &s = ring.triangles[i];
         const uint32_t now[3] = {ring.vertex, s.a, s.b};
         std::memcpy(&corners[3 * size_t(s.face)], now, sizeof now);
-        nearby->move(s.face, ring.box(s));
+        move(ring, s);
     }
     live -= ring.gone.size();
     if (2 * live < built && live > 1024)

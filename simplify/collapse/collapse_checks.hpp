@@ -6,6 +6,8 @@
 #include "simplify/collapse/dynamic_bvh.hpp"
 #include "simplify/collapse/halfedge_mesh.hpp"
 
+#include "core/mesh/wide_fans.h"
+
 #include <memory>
 #include <vector>
 
@@ -80,7 +82,24 @@ public:
     void change(const Surface &surface, const OneRing &ring); // it has become so
 
 private:
+    // Triangles around a vertex of very many: they are looked for by the directions in which they
+    // are seen from it, until it moves.
+    struct Fan {
+        uint32_t hub;
+        Vec center;
+        Box around;                  // grows, and never shrinks
+        std::vector<uint32_t> faces; // at first
+        std::unique_ptr<Nearby> directions;
+    };
+
     void build(const Surface &surface);
+    void build_fans(const Surface &surface);
+    static Box direction(const Fan &fan, const uint32_t id[3], const Vec at[3]);
+    static Box direction(const Fan &fan, const OneRing &ring, const RingTriangle &s);
+    bool meets_fans(const Surface &surface, const OneRing &ring, const Box &around) const;
+    void release_fan(const Surface &surface, uint32_t fan);
+    void remove(uint32_t face);
+    void move(const OneRing &ring, const RingTriangle &moved);
     bool meets(const Surface &surface, const OneRing &ring, uint32_t face,
                const float box[6]) const;
     bool meets_others(const Surface &surface, const OneRing &ring, const Box &around) const;
@@ -91,8 +110,11 @@ private:
     bool opens_like_a_fan(const OneRing &ring) const;
 
     size_t interior_count, live, built;
-    std::vector<uint32_t> corners; // of triangles, x 3: faster than a walk
-    std::unique_ptr<Nearby> nearby;
+    std::vector<uint32_t> corners;  // of triangles, x 3: faster than a walk
+    std::unique_ptr<Nearby> nearby; // triangles of no fan
+    std::vector<Fan> fans;
+    std::vector<uint32_t>
+        fan_of; // triangles: their fan or CWI_NO_FAN; empty where there is none
     std::vector<uint32_t> marks; // faces of the ring have the last number
     uint32_t mark = 0;
     std::vector<Eight> triangles;

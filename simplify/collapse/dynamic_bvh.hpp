@@ -23,6 +23,14 @@ struct Box {
             side[k + 3] = std::max(side[k + 3], p[k]);
         }
     }
+
+    bool meets(const Box &other) const
+    {
+        for (int k = 0; k < 3; k++)
+            if (side[k] > other.side[k + 3] || other.side[k] > side[k + 3])
+                return false;
+        return true;
+    }
 };
 
 // The tree of boxes as it was at first; then a triangle's box follows it, and boxes around it
@@ -70,6 +78,19 @@ public:
     {
         const size_t slot = slots[triangle];
         cwi_boxes_put(tree.nodes, slot, Box().side);
+    }
+
+    // Shrinks the boxes around triangles after many of them were removed.
+    void shrink()
+    {
+        for (int level = 1; level < tree.levels; level++) {
+            const size_t below = tree.first[level] - tree.first[level - 1];
+            for (size_t n = 0; n < below; n++) {
+                float around[6];
+                cwi_boxes_around(tree.nodes + tree.first[level - 1] + n, around);
+                cwi_boxes_put(tree.nodes + tree.first[level], n, around);
+            }
+        }
     }
 
     // Calls visit(triangle, its box) for triangles whose boxes share a point with `box`, until

@@ -7,9 +7,9 @@
 #include "core/base/status.h"
 #include "core/geometry/box.h"
 #include "core/geometry/bvh_segment.h"
-#include "core/geometry/closest_point.h"
 #include "core/geometry/vec3.h"
 #include "core/mesh/mesh_triangle.h"
+#include "core/mesh/triangle_boxes.h"
 
 #include <string.h>
 
@@ -379,7 +379,8 @@ cw_status cwi_measure_walls(const cw_mesh *mesh, const cw_print_desc *limits, fl
     ray_field f = {.mesh = mesh, .limits = limits, .wall = wall, .gap = gap};
     cw_status st = alloc_field(&f, err);
     if (st == CW_OK && mesh->triangle_count)
-        st = cwi_closest_build(mesh, &f.tree, err);
+        st = cwi_triangle_boxes_build(&f.tree, mesh->positions, mesh->vertex_count,
+                                      mesh->triangles, mesh->triangle_count, err);
     if (st == CW_OK) {
         prepare_points(&f);
         st = cwi_parallel_for(f.parts, 1 << 16, limits->threads, &limits->progress, "walls",

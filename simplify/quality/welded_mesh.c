@@ -5,9 +5,9 @@
 #include "core/base/memory.h"
 #include "core/base/status.h"
 #include "core/geometry/bvh.h"
-#include "core/geometry/triangle_intersect.h"
 #include "core/mesh/mesh.h"
 #include "core/mesh/weld.h"
+#include "core/mesh/wide_fans.h"
 
 /* Chooses the points that are compared to weld vertices: positions, or world points. */
 static bool choose_points(cwi_welded *w, cw_weld how)
@@ -49,7 +49,7 @@ cw_status cwi_welded_init(cwi_welded *w, const cw_mesh *mesh, cw_weld how, cw_er
     return st;
 }
 
-bool cwi_welded_sort(const cwi_welded *w, cwi_boxes *tree)
+bool cwi_welded_sort(const cwi_welded *w, const uint32_t *fan_of, cwi_boxes *tree)
 {
     const size_t count = w->mesh->triangle_count;
     float(*boxes)[6] = cwi_alloc_large(count, sizeof *boxes);
@@ -57,7 +57,7 @@ bool cwi_welded_sort(const cwi_welded *w, cwi_boxes *tree)
     bool ok = boxes && triangle;
     size_t kept = 0;
     for (size_t t = 0; t < count && ok; t++)
-        if (!cwi_is_collapsed(w, t) && cwi_has_area(w->points, w->vertex + 3 * t)) {
+        if ((!fan_of || fan_of[t] == CWI_NO_FAN) && !cwi_is_flat(w, t)) {
             cwi_boxes_triangle(w->points, w->vertex + 3 * t, boxes[kept]);
             triangle[kept++] = (uint32_t)t;
         }

@@ -3,6 +3,7 @@
 #define SIMPLIFY_QUALITY_WELDED_MESH_H
 
 #include "core/geometry/triangle.h"
+#include "core/geometry/triangle_intersect.h"
 
 #include <cubewright/quality.h>
 
@@ -22,14 +23,22 @@ CW_NODISCARD cw_status cwi_welded_init(cwi_welded *welded, const cw_mesh *mesh, 
                                        cw_error *err);
 void cwi_welded_free(cwi_welded *welded);
 
-/* Sorts the triangles by place: the tree's order holds triangles. Those without area stay out.
- * Free the tree; false when memory is out. */
-bool cwi_welded_sort(const cwi_welded *welded, struct cwi_boxes *tree);
+/* Sorts the triangles by place: the tree's order holds triangles. Those without area stay out, and
+ * those of a fan. Free the tree; false when memory is out.
+ * fan_of  triangles: their fan, or CWI_NO_FAN; NULL: none has one */
+bool cwi_welded_sort(const cwi_welded *welded, const uint32_t *fan_of, struct cwi_boxes *tree);
 
 /* A triangle that names a vertex twice has no edges to speak of. */
 static inline bool cwi_is_collapsed(const cwi_welded *welded, size_t triangle)
 {
     return cwi_triangle_is_collapsed(welded->vertex + 3 * triangle);
+}
+
+/* A triangle without area meets nothing. */
+static inline bool cwi_is_flat(const cwi_welded *welded, size_t triangle)
+{
+    return cwi_is_collapsed(welded, triangle) ||
+           !cwi_has_area(welded->points, welded->vertex + 3 * triangle);
 }
 
 #endif

@@ -2,6 +2,7 @@
 #include "support/surface.h"
 
 #include "core/base/memory.h"
+#include "core/geometry/triangle_intersect.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -89,6 +90,83 @@ static void cgal_counts_the_same_pairs(void **state)
         found += compare_with_cgal(&mesh, round);
     }
     assert_true(found > 100000);
+}
+
+/* Fans of 600 needles each around vertices of their own, some in one place, their rims crumpled; and
+ * triangles that lie anywhere. Some triangles have two hubs. */
+static void make_fans(cw_mesh *mesh, uint32_t fans, uint32_t others, uint32_t size,
+                      uint32_t seed)
+{
+    const uint32_t rim = 600, loose = fans * (rim + 1);
+    alloc_mesh(mesh, loose + 3 * others, fans * rim + others);
+    for (uint32_t i = 0; i < 3 * mesh->vertex_count; i++)
+        mesh->positions[i] = (float)(next(&seed) % size);
+    uint32_t *t = mesh->triangles;
+    for (uint32_t f = 0; f < fans; f++) {
+        const uint32_t hub = f * (rim + 1);
+        for (uint32_t n = 0; n < rim; n++, t += 3) {
+            const float angle = 0.0104719755f * (float)n;
+            float *p = mesh->positions + 3 * (size_t)(hub + 1 + n);
+            p[0] += (float)size * (2 + cosf(angle));
+            p[1] += (float)size * (2 + sinf(angle));
+            t[0] = hub;
+            t[1] = hub + 1 + n;
+            t[2] = n % 50 ? hub + 1 + (n + 1) % rim : (hub + rim + 1) % loose;
+        }
+    }
+    for (uint32_t n = 0; n < 3 * others; n++)
+        *t++ = n % 7 ? loose + n : n % loose;
+}
+
+static size_t count_all_pairs(const cw_mesh *mesh)
+{
+    size_t count = 0;
+    for (size_t a = 0; a < mesh->triangle_count; a++)
+        for (size_t b = a + 1; b < mesh->triangle_count; b++) {
+            const uint32_t *x = mesh->triangles + 3 * a, *y = mesh->triangles + 3 * b;
+            count += cwi_has_area(mesh->positions, x) && cwi_has_area(mesh->positions, y) &&
+                     cwi_triangles_meet(mesh->positions, x, y);
+        }
+    return count;
+}
+
+static void wide_fans_are_searched_in_full(void **state)
+{
+    (void)state;
+    const uint32_t sizes[4] = {2, 5, 40, 1000};
+    for (uint32_t round = 0; round < 4; round++) {
+        cw_mesh mesh;
+        make_fans(&mesh, 1 + round, 200, sizes[round], round);
+        cw_crossings x = find(&mesh, 2);
+        assert_false(x.undecided);
+        assert_true(x.count > 1000);
+        assert_int_equal(x.count, count_all_pairs(&mesh));
+        cw_crossings_free(&x);
+        cw_mesh_free(&mesh);
+    }
+}
+
+/* Two cones of one rim: boxes of their needles overlap nearly all, and none of them meet. */
+static void a_cone_of_needles_has_none(void **state)
+{
+    (void)state;
+    const uint32_t rim = 6000;
+    cw_mesh mesh;
+    alloc_mesh(&mesh, rim + 2, 2 * rim);
+    mesh.positions[3 * rim + 2] = 1;
+    for (uint32_t n = 0; n < rim; n++) {
+        const double angle = 6.283185307179586 * n / rim;
+        mesh.positions[3 * n] = (float)cos(angle);
+        mesh.positions[3 * n + 1] = (float)sin(angle);
+        const uint32_t next_one = (n + 1) % rim,
+                       two[6] = {rim, n, next_one, rim + 1, next_one, n};
+        memcpy(mesh.triangles + 6 * (size_t)n, two, sizeof two);
+    }
+    cw_crossings x = find(&mesh, 0);
+    assert_false(x.undecided);
+    assert_int_equal(x.count, 0);
+    cw_crossings_free(&x);
+    cw_mesh_free(&mesh);
 }
 
 static void an_extracted_surface_has_none(void **state)
@@ -187,6 +265,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(cgal_counts_the_same_pairs),
+        cmocka_unit_test(wide_fans_are_searched_in_full),
+        cmocka_unit_test(a_cone_of_needles_has_none),
         cmocka_unit_test(an_extracted_surface_has_none),
         cmocka_unit_test(threads_change_nothing),
         cmocka_unit_test(a_heap_of_slivers_is_given_up_in_time),
