@@ -2,6 +2,7 @@
 #ifndef CUBEWRIGHT_CUBEWRIGHT_H
 #define CUBEWRIGHT_CUBEWRIGHT_H
 
+#include <cubewright/atlas.h>
 #include <cubewright/boolean.h>
 #include <cubewright/camera.h>
 #include <cubewright/check.h>

@@ -54,6 +54,7 @@ CW_NEEDLE_RATIO = 20.0
 CW_PRINT_MAX_MM = 400.0
 CW_PRINT_MIN_MM = 5.0
 CW_SIMPLIFIER_SLAB = 524288
+CW_TEXTURE_COORDINATES = 'texture_coordinates'
 CW_VERSION = '0.2.0'
 CW_WEB_MAX_TRIANGLES = 1000000
 
@@ -664,6 +665,52 @@ class cw_slab_sink(Structure):
 cw_slab_sink._fields_ = [
     ("take", CFUNCTYPE(c_int, c_void_p, POINTER(cw_slab), POINTER(cw_error))),
     ("user", c_void_p),
+]
+
+
+class cw_atlas_desc(Structure):
+    version: int
+    size: int
+    margin: int
+    texels_per_mm: float
+    max_stretch: float
+    threads: int
+    progress: Any
+
+
+cw_atlas_desc._fields_ = [
+    ("version", c_uint32),
+    ("size", c_uint32),
+    ("margin", c_uint32),
+    ("texels_per_mm", c_double),
+    ("max_stretch", c_double),
+    ("threads", c_int),
+    ("progress", cw_progress),
+]
+
+
+class cw_atlas_facts(Structure):
+    size: int
+    margin: int
+    charts: int
+    seams: int
+    vertices: int
+    texels_per_mm: float
+    stretch: float
+    coverage: float
+    flipped: int
+
+
+cw_atlas_facts._fields_ = [
+    ("size", c_uint32),
+    ("margin", c_uint32),
+    ("charts", c_size_t),
+    ("seams", c_size_t),
+    ("vertices", c_size_t),
+    ("texels_per_mm", c_double),
+    ("stretch", c_double),
+    ("coverage", c_double),
+    ("flipped", c_size_t),
 ]
 
 
@@ -3375,6 +3422,8 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "cw_mesh_drop_volumes": (c_int, [POINTER(cw_mesh), c_double, POINTER(cw_drop_counts), POINTER(cw_error)]),
     "cw_mesh_keep_largest": (c_int, [POINTER(cw_mesh), c_size_t, POINTER(cw_drop_counts), POINTER(cw_error)]),
     "cw_mesh_drop_distant": (c_int, [POINTER(cw_mesh), POINTER(c_float), c_double, POINTER(cw_drop_counts), POINTER(c_double), POINTER(cw_error)]),
+    "cw_mesh_atlas": (c_int, [POINTER(cw_mesh), POINTER(cw_atlas_desc), POINTER(cw_atlas_facts), POINTER(cw_error)]),
+    "cw_mesh_split_seams": (c_int, [POINTER(cw_mesh), POINTER(cw_error)]),
     "cw_mesh_boolean": (c_int, [POINTER(POINTER(cw_mesh)), c_size_t, POINTER(cw_boolean_desc), POINTER(cw_mesh), POINTER(cw_boolean_facts), POINTER(cw_error)]),
     "cw_view_name": (c_char_p, [c_size_t]),
     "cw_camera_fit": (c_int, [POINTER(cw_fit_desc), POINTER(cw_camera), POINTER(cw_error)]),
