@@ -384,12 +384,17 @@ typedef struct cw_mesh_file {
     bool miscounted;
     uint64_t attribute_bytes; /* behind the facets of an STL, as they state: left out */
 
-    /* Of glTF: features that viewers apply and this reader does not, such as "skins"; "": none. */
+    /* Of glTF: features that viewers apply and this reader does not, such as "colours of morph
+     * targets"; "": none. */
     char not_applied[160];
 
     /* Of 3MF: triangles of modifiers, blockers of supports and negative volumes, as slicers call
      * them: left out. */
     size_t modifier_triangles;
+
+    size_t invisible; /* meshes of glTF that KHR_node_visibility hides: left out */
+    char invisible_names
+        [160]; /* names of those nodes, and "..." where there is no room for all */
 } cw_mesh_file;
 
 /* Reads a mesh: all parts of the file, merged, in LPS millimetres.
@@ -407,10 +412,12 @@ typedef struct cw_mesh_file {
  * than single precision, it is the middle of the mesh's box.
  *
  * glTF is in metres, +Y up: its scene is turned to LPS millimetres, (x, y, z) to (1000 x, -1000
- * z, 1000 y). Every placement of a mesh by a node is read. A mirrored mesh has its winding
- * reversed, so that triangles stay counter-clockwise from outside. Skins, morph
- * targets and animations are ignored, and images are never read. A node with a scale of 0 along
- * all axes is hidden, and left out.
+ * z, 1000 y). Every placement of a mesh by a node is read, and every instance of
+ * EXT_mesh_gpu_instancing. Morph targets are applied by the weights of the node, else of the mesh, and
+ * skins at rest: their joints place the vertices, not the node. A mirrored mesh has its winding
+ * reversed, so that triangles stay counter-clockwise from outside. Animations are
+ * ignored, and images are never read. A node with a scale of 0 along all axes is hidden, as are one that
+ * KHR_node_visibility hides and its children, and left out.
  *
  * From 3MF all objects of the build are placed, with components, in the unit that the file
  * names. A mirrored object also has its winding reversed.

@@ -1849,6 +1849,8 @@ class cw_mesh_file(Structure):
     attribute_bytes: int
     not_applied: Any
     modifier_triangles: int
+    invisible: int
+    invisible_names: Any
 
 
 cw_mesh_file._fields_ = [
@@ -1874,6 +1876,8 @@ cw_mesh_file._fields_ = [
     ("attribute_bytes", c_uint64),
     ("not_applied", c_char * 160),
     ("modifier_triangles", c_size_t),
+    ("invisible", c_size_t),
+    ("invisible_names", c_char * 160),
 ]
 
 
