@@ -392,9 +392,8 @@ typedef struct cw_mesh_file {
      * them: left out. */
     size_t modifier_triangles;
 
-    size_t invisible; /* meshes of glTF that KHR_node_visibility hides: left out */
-    char invisible_names
-        [160]; /* names of those nodes, and "..." where there is no room for all */
+    size_t invisible;          /* meshes of glTF that KHR_node_visibility hides: left out */
+    char invisible_names[160]; /* of those nodes; "..." where there is no room for all */
 } cw_mesh_file;
 
 /* Reads a mesh: all parts of the file, merged, in LPS millimetres.

@@ -6,6 +6,7 @@
 
 #include "formats/bytes/base64.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -77,6 +78,23 @@ static inline const char *write_built(const gltf_builder *b, const char *rest)
     free(digits);
     free(text);
     return test_path("a.gltf");
+}
+
+static inline cw_status read_built(const gltf_builder *b, const char *rest, cw_mesh *mesh,
+                                   cw_mesh_file *file, cw_error *err)
+{
+    return cw_mesh_read(write_built(b, rest), NULL, mesh, file, err);
+}
+
+/* Checks a vertex in metres and +Y up, as in the file. */
+static inline void check_vertex(const cw_mesh *mesh, size_t v, double x, double y, double z)
+{
+    const double expected[3] = {1000 * x, -1000 * z, 1000 * y};
+    for (size_t a = 0; a < 3; a++) {
+        const double is = mesh->origin[a] + (double)mesh->positions[3 * v + a];
+        if (!(fabs(is - expected[a]) < 1e-3))
+            fail_msg("coordinate %zu of vertex %zu is %g, not %g", a, v, is, expected[a]);
+    }
 }
 
 #endif
