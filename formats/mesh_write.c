@@ -371,14 +371,18 @@ static bool is_translucent(const cwi_parts *placed)
 }
 
 static unsigned find_dropped(const cw_part *parts, size_t count, const cwi_parts *placed,
-                             unsigned keeps, const cw_write_loss *loss)
+                             const cwi_format_driver *f, const cw_write_loss *loss)
 {
+    const unsigned keeps = f->keeps;
     unsigned had = CW_KEEPS_SHARING | (placed->count > 1 ? CW_KEEPS_PARTS : 0u);
     unsigned has = keeps & (CW_KEEPS_SHARING | CW_KEEPS_PARTS | CW_KEEPS_AFFINE);
     for (size_t i = 0; i < count; i++)
         had |= parts[i].spool ? cwi_spool_arrays(parts[i].spool) : cwi_arrays_of(parts[i].mesh);
-    for (size_t i = 0; i < placed->count; i++)
-        has |= placed->items[i].arrays & ~(unsigned)CW_KEEPS_AFFINE;
+    for (size_t i = 0; i < placed->count; i++) {
+        const bool hidden = f->write.one_coloring && placed->items[i].face_colors;
+        has |= placed->items[i].arrays &
+               ~(unsigned)(CW_KEEPS_AFFINE | (hidden ? CW_KEEPS_COLORS : 0));
+    }
     if (!(keeps & CW_KEEPS_OPACITY) && is_translucent(placed))
         had |= CW_KEEPS_OPACITY;
     if (loss->merged_vertices || loss->flat_triangles)
@@ -421,8 +425,10 @@ cw_status cw_parts_write_loss(const char *path, const cw_part *parts, size_t cou
     for (size_t i = 0; i < placed.count && st == CW_OK; i++)
         if (!(f->keeps & CW_KEEPS_PLACES) && !is_exact(&placed.items[i], &d))
             st = cwi_measure_loss(&placed.items[i], loss, err);
+    if (st == CW_OK && f->write.count_split)
+        st = f->write.count_split(&placed, &d, &loss->split_vertices, err);
     if (st == CW_OK)
-        loss->dropped = find_dropped(parts, count, &placed, f->keeps, loss);
+        loss->dropped = find_dropped(parts, count, &placed, f, loss);
     if (st == CW_OK && loss->dropped & CW_KEEPS_ATTRIBUTES)
         name_attributes(parts, count, loss->attributes, sizeof loss->attributes);
     cwi_parts_free(&placed);

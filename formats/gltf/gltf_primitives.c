@@ -235,6 +235,7 @@ cw_status cwi_gltf_add_instance(cwi_gltf_reader *r, const cwi_gltf_instance *at,
 {
     const cwi_gltf_mesh *mesh = &r->scene.meshes[at->mesh];
     last_vertices last = {0};
+    bool is_drawn = false;
     cw_status st = keep_shapes(r, mesh, err);
     for (size_t i = mesh->first; i < mesh->end && st == CW_OK; i++) {
         const cwi_gltf_primitive *p = &r->scene.primitives[i];
@@ -250,8 +251,9 @@ cw_status cwi_gltf_add_instance(cwi_gltf_reader *r, const cwi_gltf_instance *at,
         st = add_primitive(r, at, p, &last, r->shapes ? &r->shapes[i - mesh->first] : &own,
                            metadata, err);
         close_shape(&own);
-        metadata->parts++;
+        is_drawn = true;
     }
+    metadata->parts += is_drawn;
     if (!r->keeps_shapes)
         cwi_gltf_free_shapes(r);
     return st;

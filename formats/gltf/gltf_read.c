@@ -175,7 +175,7 @@ static uint64_t max_elements(const cwi_gltf_reader *r)
     return FREE_COUNT + r->in->file.size + largest;
 }
 
-/* Copies the label of a node, with the colour of its material if it has one. */
+/* Copies the label of a node, with the colour of its material if it has one alone. */
 static cw_label label_of(const cwi_gltf_reader *r, const cwi_gltf_instance *at)
 {
     const cwi_gltf_node *n = at->node;
@@ -188,8 +188,9 @@ static cw_label label_of(const cwi_gltf_reader *r, const cwi_gltf_instance *at)
                       .type = {n->codes[3], n->codes[4], n->codes[5]}};
     memcpy(label.color, n->color, sizeof label.color);
     const cwi_gltf_material *m =
-        mesh->first < mesh->end ? cwi_gltf_material_of(r, &r->scene.primitives[mesh->first])
-                                : NULL;
+        mesh->first + 1 == mesh->end
+            ? cwi_gltf_material_of(r, &r->scene.primitives[mesh->first])
+            : NULL;
     if (m && !m->is_plain) {
         label.has_color = true;
         cwi_gltf_base_color(m, label.color);

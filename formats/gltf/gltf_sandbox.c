@@ -345,11 +345,13 @@ static cw_status make_json(void *state, int fd, const void *request, void *share
 /* Returns an upper bound, far above the JSON's size. Unused memory is never touched. */
 static size_t capacity_for_json(const cwi_gltf_document *d)
 {
-    enum { BASE = 1 << 20, PER_PIECE = 16 << 10, WORST_ESCAPE = 6 };
-    size_t words = 0;
+    enum { BASE = 1 << 20, PER_PIECE = 16 << 10, PER_GROUP = 2 << 10, WORST_ESCAPE = 6 };
+    size_t words = 0, groups = 0;
+    for (size_t i = 0; i < d->count; i++)
+        groups += d->pieces[i].groups.count;
     for (size_t i = 0; i < d->provenance_count; i++)
         words += strlen(d->provenance[i].key) + strlen(d->provenance[i].value);
-    return BASE + PER_PIECE * d->count + WORST_ESCAPE * words;
+    return BASE + PER_PIECE * d->count + PER_GROUP * groups + WORST_ESCAPE * words;
 }
 
 static cw_status take_json(const void *shared, char **json, size_t *size, cw_error *err)

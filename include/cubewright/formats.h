@@ -359,8 +359,8 @@ typedef struct cw_mesh_file {
     unsigned known;     /* cw_known flags; unknown properties were taken as LPS millimetres */
     cw_axes axes;       /* the file's own axes; zeroed for glTF and where not known */
     bool local;         /* coordinates were relative to an origin that the file names */
-    size_t parts;       /* number of merged parts: objects of OBJ, items of 3MF, primitives of
-                           glTF; else 1 */
+    size_t parts;       /* number of merged parts: objects of OBJ, items of 3MF, placed meshes
+                           of glTF; else 1 */
     size_t polygons;    /* faces of more than three corners, cut into triangles */
     size_t skipped;     /* points, lines and faces of fewer than three corners: left out */
     size_t levels;      /* maximum number of coarser levels of detail of a mesh (MSFT_lod of
@@ -583,6 +583,11 @@ CW_NODISCARD CW_API cw_status cw_mesh_write(const char *path, const cw_mesh *mes
  * node are the label's value, colour and codes. In the other formats its value and colour are
  * those of the vertices, if all parts have them.
  *
+ * glTF has colours of vertices and of materials. Up to 128 colours of faces are a primitive and a
+ * material each, with common vertices, and triangles are in the order of their colours. With more, and
+ * compressed by Draco or meshopt, they are those of vertices, and a vertex of several colours is
+ * written once for each (cw_write_loss.split_vertices). They win over colours of vertices.
+ *
  * The format "neuroglancer" writes a folder of multi-resolution meshes with a segment for each
  * part, whose levels are its levels of detail. The label of a part is the segment's number;
  * without labels segments count from 1. Names and, of closed parts, volumes are segment
@@ -635,6 +640,7 @@ typedef struct cw_write_loss {
     unsigned dropped;       /* attributes that the meshes have and the file will not: cw_keeps
                                flags */
     char attributes[256];   /* names of those of cw_mesh.attributes, such as "uv, thickness" */
+    size_t split_vertices;  /* vertices that glTF has more, because each has one colour there */
 } cw_write_loss;
 
 /* Measures the loss for a reader with single precision of a file by cw_mesh_write() or

@@ -2002,6 +2002,7 @@ class cw_write_loss(Structure):
     flat_triangles: int
     dropped: int
     attributes: Any
+    split_vertices: int
 
 
 cw_write_loss._fields_ = [
@@ -2010,6 +2011,7 @@ cw_write_loss._fields_ = [
     ("flat_triangles", c_size_t),
     ("dropped", c_uint),
     ("attributes", c_char * 256),
+    ("split_vertices", c_size_t),
 ]
 
 

@@ -71,7 +71,7 @@ static void primitives_are_merged(void **state)
     cw_mesh_file file;
     cw_error err = {0};
     assert_ok(read_primitive(BY_BYTES "," BY_BYTES, &mesh, &file, &err), err);
-    assert_int_equal(file.parts, 2);
+    assert_int_equal(file.parts, 1);
     assert_int_equal(mesh.vertex_count, 3);
     check_triangles(&mesh, 2, shared);
     cw_mesh_free(&mesh);
