@@ -194,7 +194,7 @@ static void color_earlier(cwi_gltf_reader *r, size_t first)
 {
     const cwi_face_colors *f = &r->materials;
     memset(r->colors, 255, 4 * first);
-    for (size_t i = 0; i < 3 * f->count; i++)
+    for (size_t i = 0; f->colors && i < 3 * f->count; i++)
         if (r->build.triangles[i] < first)
             memcpy(r->colors + 4 * (size_t)r->build.triangles[i], f->colors + 4 * (i / 3), 4);
 }
