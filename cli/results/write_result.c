@@ -153,6 +153,13 @@ static void report_split(const cli_made *made, const cw_write_loss *loss)
                                   : "up to 128 colours add none");
 }
 
+static void report_rounded(const cli_made *made, const cw_write_loss *loss)
+{
+    if (loss->rounded_colors)
+        cli_say("%s: colours of %s faces rounded to 5 bits a channel", made->path,
+                cli_count(loss->rounded_colors));
+}
+
 static void report_dropped(const cli_made *made, const cw_write_loss *loss)
 {
     char list[128] = "";
@@ -226,6 +233,7 @@ static cw_status end_writing(const writing *w, cw_error *err)
     warn_of_loss(w->report, made, l, &w->loss);
     report_dropped(made, &w->loss);
     report_split(made, &w->loss);
+    report_rounded(made, &w->loss);
     cli_report_end(w->report, "write", l->triangles, l->triangles);
     return CW_OK;
 }

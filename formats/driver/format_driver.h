@@ -52,6 +52,8 @@ typedef struct cwi_mesh_writing {
     cwi_folder_check *replaces;
     bool own_axes;       /* unit and frame are those of the format */
     bool text;           /* it is text, or can be */
+    unsigned text_lacks; /* properties that its text does not keep: cw_keeps flags */
+    int color_bits;      /* of a channel of colours of faces, without opacity; 0: all */
     bool compresses;     /* it has compressed forms */
     cw_compression only; /* it has this form alone */
     bool levels;         /* it has levels of detail */

@@ -400,7 +400,9 @@ typedef struct cw_mesh_file {
  *
  * Vertices keep their numbers, also those that no triangle names. Positions keep their bits
  * where the file has single precision. STL shares nothing: its corners at equal coordinates
- * become one vertex, and its facet normals are ignored. Triangles without area are kept. A
+ * become one vertex, and its facet normals are ignored. The words behind its facets are colours of faces, if
+ * they are those of VisCAM and SolidView (bit 15 is set, or all are 0), or the header has a colour of
+ * Materialise Magics. Triangles without area are kept. A
  * polygon becomes a fan around its first corner where that is right, as when it is convex; else it
  * is cut into triangles by its ears, as seen along the axis along which it is largest.
  * Normals are kept when every vertex has one that is finite, and OBJ does not name two for it.
@@ -422,7 +424,7 @@ typedef struct cw_mesh_file {
  * names. A mirrored object also has its winding reversed.
  *
  * Colours of materials (glTF, 3MF, .mtl beside OBJ) become those of vertices where no vertex gets
- * two; else, and where PLY, OFF or VTP colour faces, they are the attribute CW_FACE_COLORS. In glTF
+ * two; else, and where PLY, OFF, VTP or STL colour faces, they are the attribute CW_FACE_COLORS. In glTF
  * they are multiplied with COLOR_0; a base colour of white, or of 0.8 of it, counts as none. Labels that
  * our glTF states are those of vertices, if each part has one.
  *
@@ -641,6 +643,7 @@ typedef struct cw_write_loss {
                                flags */
     char attributes[256];   /* names of those of cw_mesh.attributes, such as "uv, thickness" */
     size_t split_vertices;  /* vertices that glTF has more, because each has one colour there */
+    size_t rounded_colors;  /* faces whose colours STL rounds to 5 bits a channel */
 } cw_write_loss;
 
 /* Measures the loss for a reader with single precision of a file by cw_mesh_write() or

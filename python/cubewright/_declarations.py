@@ -2003,6 +2003,7 @@ class cw_write_loss(Structure):
     dropped: int
     attributes: Any
     split_vertices: int
+    rounded_colors: int
 
 
 cw_write_loss._fields_ = [
@@ -2012,6 +2013,7 @@ cw_write_loss._fields_ = [
     ("dropped", c_uint),
     ("attributes", c_char * 256),
     ("split_vertices", c_size_t),
+    ("rounded_colors", c_size_t),
 ]
 
 
