@@ -186,6 +186,12 @@ static cw_status check_levels(const cwi_format_driver *f, const cw_part *parts, 
     return CW_OK;
 }
 
+/* Returns the properties of a mesh that the file will keep. */
+static unsigned keeps_of(const cwi_format_driver *f, const cw_write_desc *d)
+{
+    return f->keeps & ~(d->text ? f->write.text_lacks : 0u);
+}
+
 static cw_status open_output(const char *path, const cwi_format_driver *f,
                              const cw_write_desc *d, cwi_mesh_output *out, cw_error *err)
 {
@@ -325,7 +331,7 @@ cw_status cw_parts_write_with_consent(const char *path, const cw_part *parts, si
     if (st == CW_OK && f->write.only)
         d.compression = f->write.only;
     if (st == CW_OK)
-        st = cwi_parts_place(parts, count, &d, f->keeps, name, &placed, origin, err);
+        st = cwi_parts_place(parts, count, &d, keeps_of(f, &d), name, &placed, origin, err);
     const cw_team *team = find_team(parts, count);
     if (team)
         st = cw_team_agree(team, st, err);
@@ -358,28 +364,61 @@ static bool is_exact(const cwi_part *part, const cw_write_desc *d)
     return d->local && origin[0] == 0 && origin[1] == 0 && origin[2] == 0;
 }
 
-/* Returns true if a vertex of parts as they are written is not opaque. */
-static bool is_translucent(const cwi_parts *placed)
+static bool has_opacity(const uint8_t *colors, size_t count)
+{
+    for (size_t i = 0; colors && i < count; i++)
+        if (colors[4 * i + 3] != 255)
+            return true;
+    return false;
+}
+
+/* Returns true if a vertex of parts as they are written is not opaque, or a face where they have a
+ * rounded colour alone. */
+static bool is_translucent(const cwi_parts *placed, const cwi_format_driver *f)
 {
     for (size_t i = 0; i < placed->count; i++) {
-        const cw_mesh *m = &placed->items[i].mesh;
-        for (size_t v = 0; m->colors && v < m->vertex_count; v++)
-            if (m->colors[4 * v + 3] != 255)
-                return true;
+        const cwi_part *p = &placed->items[i];
+        if (has_opacity(p->mesh.colors, p->mesh.vertex_count) ||
+            (f->write.color_bits && has_opacity(p->face_colors, p->mesh.triangle_count)))
+            return true;
     }
     return false;
 }
 
-static unsigned find_dropped(const cw_part *parts, size_t count, const cwi_parts *placed,
-                             unsigned keeps, const cw_write_loss *loss)
+/* Counts the faces whose colour is not one of the levels that the format has. */
+static size_t count_rounded(const cwi_parts *placed, int bits)
 {
+    const unsigned levels = (1u << bits) - 1;
+    size_t count = 0;
+    for (size_t i = 0; i < placed->count && bits; i++) {
+        const cwi_part *p = &placed->items[i];
+        for (size_t t = 0; p->face_colors && t < p->mesh.triangle_count; t++) {
+            bool same = true;
+            for (size_t c = 0; c < 3; c++) {
+                const unsigned is = p->face_colors[4 * t + c],
+                               level = (is * levels + 127) / 255;
+                same = same && (level * 255 + levels / 2) / levels == is;
+            }
+            count += !same;
+        }
+    }
+    return count;
+}
+
+static unsigned find_dropped(const cw_part *parts, size_t count, const cwi_parts *placed,
+                             const cwi_format_driver *f, const cw_write_loss *loss)
+{
+    const unsigned keeps = f->keeps;
     unsigned had = CW_KEEPS_SHARING | (placed->count > 1 ? CW_KEEPS_PARTS : 0u);
     unsigned has = keeps & (CW_KEEPS_SHARING | CW_KEEPS_PARTS | CW_KEEPS_AFFINE);
     for (size_t i = 0; i < count; i++)
         had |= parts[i].spool ? cwi_spool_arrays(parts[i].spool) : cwi_arrays_of(parts[i].mesh);
-    for (size_t i = 0; i < placed->count; i++)
-        has |= placed->items[i].arrays & ~(unsigned)CW_KEEPS_AFFINE;
-    if (!(keeps & CW_KEEPS_OPACITY) && is_translucent(placed))
+    for (size_t i = 0; i < placed->count; i++) {
+        const bool hidden = f->write.one_coloring && placed->items[i].face_colors;
+        has |= placed->items[i].arrays &
+               ~(unsigned)(CW_KEEPS_AFFINE | (hidden ? CW_KEEPS_COLORS : 0));
+    }
+    if (!(keeps & CW_KEEPS_OPACITY) && is_translucent(placed, f))
         had |= CW_KEEPS_OPACITY;
     if (loss->merged_vertices || loss->flat_triangles)
         had |= CW_KEEPS_PLACES;
@@ -417,12 +456,16 @@ cw_status cw_parts_write_loss(const char *path, const cw_part *parts, size_t cou
     memset(loss, 0, sizeof *loss);
     cw_status st = prepare_writer(path, &d, &f, err);
     if (st == CW_OK)
-        st = cwi_parts_place(parts, count, &d, f->keeps, "", &placed, origin, err);
+        st = cwi_parts_place(parts, count, &d, keeps_of(f, &d), "", &placed, origin, err);
     for (size_t i = 0; i < placed.count && st == CW_OK; i++)
         if (!(f->keeps & CW_KEEPS_PLACES) && !is_exact(&placed.items[i], &d))
             st = cwi_measure_loss(&placed.items[i], loss, err);
     if (st == CW_OK)
-        loss->dropped = find_dropped(parts, count, &placed, f->keeps, loss);
+        loss->rounded_colors = count_rounded(&placed, f->write.color_bits);
+    if (st == CW_OK && f->write.count_split)
+        st = f->write.count_split(&placed, &d, &loss->split_vertices, err);
+    if (st == CW_OK)
+        loss->dropped = find_dropped(parts, count, &placed, f, loss);
     if (st == CW_OK && loss->dropped & CW_KEEPS_ATTRIBUTES)
         name_attributes(parts, count, loss->attributes, sizeof loss->attributes);
     cwi_parts_free(&placed);

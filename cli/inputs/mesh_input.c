@@ -75,6 +75,10 @@ static void say_what_was_found(const cli_mesh *m)
     if (m->file.hidden)
         cli_say("%s: %zu part%s hidden by a scale of 0, as an animation does, left out",
                 m->path, m->file.hidden, m->file.hidden == 1 ? "" : "s");
+    if (m->file.invisible)
+        cli_say("%s: %zu part%s hidden by KHR_node_visibility left out%s%s", m->path,
+                m->file.invisible, m->file.invisible == 1 ? "" : "s",
+                m->file.invisible_names[0] ? ": " : "", m->file.invisible_names);
     if (m->file.fault[0])
         cli_say("%s: the file breaks a rule of glTF, and is read all the same: %s", m->path,
                 m->file.fault);

@@ -143,6 +143,23 @@ static void warn_of_loss(cli_report *report, const cli_made *made, const cli_loa
             cli_count(l->vertices), cli_count(loss->flat_triangles), cli_count(l->triangles));
 }
 
+static void report_split(const cli_made *made, const cw_write_loss *loss)
+{
+    if (loss->split_vertices)
+        cli_say("%s: colours of faces became those of vertices, with %s vertices more, so that "
+                "each has one colour; %s",
+                made->path, cli_count(loss->split_vertices),
+                made->compression ? "without --compress, up to 128 colours add none"
+                                  : "up to 128 colours add none");
+}
+
+static void report_rounded(const cli_made *made, const cw_write_loss *loss)
+{
+    if (loss->rounded_colors)
+        cli_say("%s: colours of %s faces rounded to 5 bits a channel", made->path,
+                cli_count(loss->rounded_colors));
+}
+
 static void report_dropped(const cli_made *made, const cw_write_loss *loss)
 {
     char list[128] = "";
@@ -215,6 +232,8 @@ static cw_status end_writing(const writing *w, cw_error *err)
     made->dropped = w->how->report_dropped ? w->loss.dropped : 0;
     warn_of_loss(w->report, made, l, &w->loss);
     report_dropped(made, &w->loss);
+    report_split(made, &w->loss);
+    report_rounded(made, &w->loss);
     cli_report_end(w->report, "write", l->triangles, l->triangles);
     return CW_OK;
 }

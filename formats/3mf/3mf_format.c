@@ -9,5 +9,5 @@ const cwi_format_driver cwi_format_3mf = {
     .keeps = CW_KEEPS_SHARING | CW_KEEPS_PLACES | CW_KEEPS_COLORS | CW_KEEPS_OPACITY |
              CW_KEEPS_PARTS | CW_KEEPS_FACE_COLORS,
     .mesh = {.sniff = cwi_3mf_sniff, .read = cwi_3mf_read},
-    .write = {.write = cwi_3mf_write, .spools = true},
+    .write = {.write = cwi_3mf_write, .one_coloring = true, .spools = true},
 };

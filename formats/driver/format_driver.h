@@ -38,6 +38,10 @@ typedef struct cwi_mesh_reading {
     cwi_mesh_reader *read;   /* NULL: it reads no mesh */
 } cwi_mesh_reading;
 
+/* Counts the vertices that a file has more than its parts, because each has one colour there. */
+typedef cw_status cwi_split_counter(const cwi_parts *parts, const cw_write_desc *desc,
+                                    size_t *added, cw_error *err);
+
 typedef struct cwi_mesh_writing {
     cwi_mesh_writer *write;              /* NULL: it writes no mesh */
     cw_status (*prepare)(cw_error *err); /* finds its modules; NULL: nothing to find */
@@ -48,12 +52,16 @@ typedef struct cwi_mesh_writing {
     cwi_folder_check *replaces;
     bool own_axes;       /* unit and frame are those of the format */
     bool text;           /* it is text, or can be */
+    unsigned text_lacks; /* properties that its text does not keep: cw_keeps flags */
+    int color_bits;      /* of a channel of colours of faces, without opacity; 0: all */
     bool compresses;     /* it has compressed forms */
     cw_compression only; /* it has this form alone */
     bool levels;         /* it has levels of detail */
     bool animates;       /* it can show parts one after another */
     bool sides;          /* it has labels on both sides of triangles */
-    bool spools;         /* it can write a surface from a spool */
+    bool one_coloring;   /* a mesh with colours of faces has none of vertices there */
+    cwi_split_counter *count_split; /* NULL: colours of faces add no vertices */
+    bool spools;                    /* it can write a surface from a spool */
     bool shares; /* each process of a team can write its records: in binary, all have a size */
 } cwi_mesh_writing;
 

@@ -129,6 +129,7 @@ void cwi_gltf_put(const cwi_gltf_plan *plan, const cwi_gltf_piece *piece,
     const cw_mesh *m = &piece->part->mesh;
     switch (a->use) {
     case CWI_GLTF_INDICES:
+        i = piece->groups.order ? 3 * (size_t)piece->groups.order[i / 3] + i % 3 : i;
         if (a->component == UNSIGNED_SHORT)
             cwi_put_u16(to, (uint16_t)m->triangles[i]);
         else

@@ -228,6 +228,14 @@ static cw_status check_accessor(const cwi_gltf_scene *scene, int accessor, const
     return CW_OK;
 }
 
+/* Returns true for an accessor of a primitive that was decoded as a whole. */
+static bool is_unpacked(const cwi_gltf_primitive *p, int accessor)
+{
+    return p && accessor >= 0 &&
+           (accessor == p->indices || accessor == p->position || accessor == p->normal ||
+            accessor == p->color);
+}
+
 /* Opens the numbers of a primitive that was decoded as a whole. */
 static cw_status open_unpacked(const cwi_gltf_bytes *from, const cwi_gltf_accessor *a,
                                int accessor, cwi_gltf_numbers *numbers, cw_error *err)
@@ -381,7 +389,7 @@ cw_status cwi_gltf_open_numbers(const cwi_gltf_bytes *from, const cwi_gltf_scene
                                 int accessor, const char *what, cwi_gltf_numbers *numbers,
                                 cw_error *err)
 {
-    if (from->unpacked && accessor >= 0 && (size_t)accessor < scene->accessor_count &&
+    if (is_unpacked(from->unpacked, accessor) && (size_t)accessor < scene->accessor_count &&
         scene->accessors[accessor].view < 0)
         return open_unpacked(from, &scene->accessors[accessor], accessor, numbers, err);
     cw_status st = check_accessor(scene, accessor, what, err);

@@ -114,16 +114,28 @@ int add_material(tinygltf::Model &model, const std::string &name,
     return int(model.materials.size()) - 1;
 }
 
+int add_color(tinygltf::Model &model, const std::string &name, const uint8_t *c)
+{
+    return add_material(model, name, {linear(c[0]), linear(c[1]), linear(c[2]), c[3] / 255.0},
+                        c[3] < 255 ? "BLEND" : "OPAQUE");
+}
+
+// Prints a colour, and its opacity if it has one: "#FF8000".
+std::string print_color(const uint8_t *c)
+{
+    char hex[16];
+    const int end = std::snprintf(hex, sizeof hex, "#%02X%02X%02X", c[0], c[1], c[2]);
+    if (c[3] < 255)
+        std::snprintf(hex + end, sizeof hex - size_t(end), "%02X", c[3]);
+    return hex;
+}
+
 // Finds the material of a piece. One of a single colour has its own. Vertex colours are multiplied with
 // the base colour, so the base colour is white with them. Other similar pieces share a material.
 int find_material(tinygltf::Model &model, const cwi_gltf_piece &piece)
 {
-    if (piece.part->has_color) {
-        const uint8_t *c = piece.part->color;
-        return add_material(model, piece.part->name,
-                            {linear(c[0]), linear(c[1]), linear(c[2]), c[3] / 255.0},
-                            c[3] < 255 ? "BLEND" : "OPAQUE");
-    }
+    if (piece.part->has_color)
+        return add_color(model, piece.part->name, piece.part->color);
     const double grey = piece.part->mesh.colors ? 1.0 : 0.8;
     const std::string mode = piece.translucent ? "BLEND" : "OPAQUE";
     for (size_t i = 0; i < model.materials.size(); i++)
@@ -153,10 +165,8 @@ void tell_label(const cw_label &label, Object &extras)
     if (label.layer > 0)
         extras["layer"] = whole(label.layer);
     if (label.has_color) {
-        char hex[16];
-        std::snprintf(hex, sizeof hex, "#%02X%02X%02X", label.color[0], label.color[1],
-                      label.color[2]);
-        extras["color"] = text(hex);
+        const uint8_t opaque[4] = {label.color[0], label.color[1], label.color[2], 255};
+        extras["color"] = text(print_color(opaque));
     }
     if (label.category.value || label.category.meaning)
         extras["category"] = describe_code(label.category);
@@ -247,9 +257,7 @@ size_t count_levels(const cwi_gltf_piece *pieces, size_t count)
     return n;
 }
 
-// Adds one of `left` pieces; the others follow it.
-void add_piece(tinygltf::Model &model, const cwi_gltf_piece &piece, size_t left,
-               const double *local_origin)
+tinygltf::Primitive make_primitive(tinygltf::Model &model, const cwi_gltf_piece &piece)
 {
     tinygltf::Primitive primitive;
     for (size_t n = 0; n < piece.array_count; n++) {
@@ -262,12 +270,45 @@ void add_piece(tinygltf::Model &model, const cwi_gltf_piece &piece, size_t left,
     }
     if (piece.draco)
         primitive.extensions[GLTF_DRACO] = draco_extension(model, piece);
-    primitive.material = find_material(model, piece);
     primitive.mode = TINYGLTF_MODE_TRIANGLES;
+    return primitive;
+}
 
+// Adds a primitive for each colour. All have the same vertices, and their indices are one view.
+void add_groups(tinygltf::Model &model, const cwi_gltf_piece &piece,
+                const tinygltf::Primitive &whole, tinygltf::Mesh &mesh)
+{
+    const size_t stride = size_t(piece.arrays[0].stride);
+    for (size_t n = 0; n < piece.groups.count; n++) {
+        const cwi_color_group &group = piece.groups.items[n];
+        tinygltf::Primitive primitive = whole;
+        tinygltf::Accessor indices = model.accessors[size_t(whole.indices)];
+        indices.byteOffset = 3 * group.first * stride;
+        indices.count = 3 * group.count;
+        if (n == 0) {
+            model.accessors[size_t(whole.indices)] = indices;
+        } else {
+            model.accessors.push_back(indices);
+            primitive.indices = int(model.accessors.size()) - 1;
+        }
+        primitive.material = add_color(model, print_color(group.color), group.color);
+        mesh.primitives.push_back(primitive);
+    }
+}
+
+// Adds one of `left` pieces; the others follow it.
+void add_piece(tinygltf::Model &model, const cwi_gltf_piece &piece, size_t left,
+               const double *local_origin)
+{
     tinygltf::Mesh mesh;
+    tinygltf::Primitive primitive = make_primitive(model, piece);
     mesh.name = piece.part->name;
-    mesh.primitives.push_back(primitive);
+    if (piece.groups.count) {
+        add_groups(model, piece, primitive, mesh);
+    } else {
+        primitive.material = find_material(model, piece);
+        mesh.primitives.push_back(primitive);
+    }
     model.meshes.push_back(mesh);
     tinygltf::Node node = make_node(piece, local_origin);
     node.mesh = int(model.meshes.size()) - 1;

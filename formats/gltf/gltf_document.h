@@ -4,7 +4,7 @@
 #define FORMATS_GLTF_GLTF_DOCUMENT_H
 
 #include "formats/codec/draco_wrap.h"
-#include "formats/mesh/mesh_writer.h"
+#include "formats/mesh/color_groups.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -30,9 +30,10 @@ typedef struct cwi_gltf_array {
     uint64_t packed_at, packed; /* meshopt: place and number of its compressed bytes */
 } cwi_gltf_array;
 
-/* A node with a mesh of one primitive. */
+/* A node with a mesh of one primitive, or of one for each colour. */
 typedef struct cwi_gltf_piece {
     const cwi_part *part;
+    cwi_color_groups groups; /* a primitive each; none: there is one primitive */
     cwi_gltf_array arrays[CWI_GLTF_USES];
     size_t array_count;
     double low[3], high[3]; /* box of POSITION, as it is stored */

@@ -17,4 +17,7 @@ CW_NODISCARD cw_status cwi_gltf_prepare(cw_error *err);
  * Returns CW_ERR_ARGUMENT for bits that it does not support; CW_ERR_UNSUPPORTED. */
 CW_NODISCARD cw_status cwi_gltf_prepare_codec(const cw_write_desc *desc, cw_error *err);
 
+/* Counts the vertices that colours of triangles add to a file, where they become those of vertices. */
+cwi_split_counter cwi_gltf_count_split;
+
 #endif

@@ -1,6 +1,7 @@
 /* Lays out the arrays of a glTF file: accessors, their bytes, bounds and places in the
  * buffer. */
 #include "core/geometry/box.h"
+#include "formats/gltf/gltf_formats.h"
 #include "formats/gltf/gltf_pack.h"
 
 #include "core/base/memory.h"
@@ -18,9 +19,14 @@ void cwi_gltf_plan_free(cwi_gltf_plan *plan)
         cwi_free(plan->blocks[i].bytes);
     for (size_t i = 0; plan->own && i < plan->parts.count; i++)
         cw_mesh_free(&plan->own[i]);
+    for (size_t i = 0; plan->split && i < plan->parts.count; i++)
+        cw_mesh_free(&plan->split[i]);
+    for (size_t i = 0; plan->pieces && i < plan->parts.count; i++)
+        cwi_color_groups_free(&plan->pieces[i].groups);
     cwi_free(plan->blocks);
     cwi_free(plan->keys);
     cwi_free(plan->own);
+    cwi_free(plan->split);
     cwi_free(plan->pieces);
     cwi_free(plan->parts.items);
     *plan = (cwi_gltf_plan){0};
@@ -83,6 +89,76 @@ static void fill_linear(cwi_gltf_plan *plan)
         plan->linear[i] = (uint16_t)lround(65535 * linear);
         plan->fits_byte[i] = lround(255 * to_srgb(byte)) == i;
     }
+}
+
+/* Returns true if colours of vertices must stand for those of triangles: where they are many, and where
+ * a codec puts triangles in an order of its own. All of them white are vertices too, as a white
+ * material is no colour to readers. */
+static bool needs_split(const cwi_part *part, const cw_write_desc *desc)
+{
+    static const uint8_t white[4] = {255, 255, 255, 255};
+    const size_t count = cwi_count_face_colors(part);
+    if (count == 1)
+        return memcmp(part->face_colors, white, sizeof white) == 0;
+    return count > CWI_MAX_COLOR_GROUPS || desc->compression == CW_COMPRESS_DRACO ||
+           desc->compression == CW_COMPRESS_MESHOPT;
+}
+
+/* Takes the arrays of a mesh whose vertices are split by colour. */
+static cw_status split_part(cwi_part *part, cw_mesh *split, cw_error *err)
+{
+    cw_mesh *m = &part->mesh;
+    cw_status st = cwi_split_by_color(part, split, err);
+    if (st != CW_OK)
+        return st;
+    m->vertex_count = split->vertex_count;
+    m->positions = split->positions;
+    m->triangles = split->triangles;
+    m->normals = split->normals;
+    m->colors = split->colors;
+    return CW_OK;
+}
+
+/* Plans colours of triangles: as that of the part, as groups, or as colours of split vertices. */
+static cw_status plan_colors(cwi_gltf_plan *plan, const cw_write_desc *desc, cw_error *err)
+{
+    cw_status st = CW_OK;
+    plan->split = cwi_alloc_zeroed(plan->parts.count, sizeof *plan->split);
+    if (!plan->split)
+        return cwi_fail_memory(err);
+    for (size_t p = 0; p < plan->parts.count && st == CW_OK; p++) {
+        cwi_part *part = &plan->parts.items[p];
+        cwi_color_groups *groups = &plan->pieces[p].groups;
+        if (!part->face_colors)
+            continue;
+        part->has_color = false;
+        part->mesh.colors = NULL;
+        if (needs_split(part, desc)) {
+            st = split_part(part, &plan->split[p], err);
+            continue;
+        }
+        st = cwi_group_faces(part, groups, err);
+        if (st == CW_OK && groups->count == 1) {
+            part->has_color = true;
+            memcpy(part->color, groups->items->color, sizeof part->color);
+            cwi_color_groups_free(groups);
+        }
+    }
+    return st;
+}
+
+cw_status cwi_gltf_count_split(const cwi_parts *parts, const cw_write_desc *desc, size_t *added,
+                               cw_error *err)
+{
+    cw_status st = CW_OK;
+    *added = 0;
+    for (size_t p = 0; p < parts->count && st == CW_OK; p++) {
+        size_t more = 0;
+        if (parts->items[p].face_colors && needs_split(&parts->items[p], desc))
+            st = cwi_count_split(&parts->items[p], &more, err);
+        *added += more;
+    }
+    return st;
 }
 
 /* --- the file ----------------------------------------------------------------------------- */
@@ -151,9 +227,11 @@ cw_status cwi_gltf_plan_make(cwi_gltf_plan *plan, const cwi_parts *parts,
                              const cwi_mesh_output *out, cw_error *err)
 {
     cwi_gltf_document *d = &plan->document;
-    cw_status st = check_vertices(parts, err);
+    cw_status st = make_pieces(plan, parts, err);
     if (st == CW_OK)
-        st = make_pieces(plan, parts, err);
+        st = plan_colors(plan, out->desc, err);
+    if (st == CW_OK)
+        st = check_vertices(&plan->parts, err);
     if (st != CW_OK)
         return st;
     fill_linear(plan);

@@ -3,14 +3,16 @@
 #include "core/base/status.h"
 #include "core/base/text.h"
 #include "formats/gltf/gltf_reader.h"
+#include "formats/mesh/place_parts.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 enum { DEEPEST_NODE = 1024 };
 
-static void multiply_matrices(const double *a, const double *b, double *out)
+void cwi_gltf_multiply(const double *a, const double *b, double *out)
 {
     for (int r = 0; r < 3; r++)
         for (int c = 0; c < 4; c++)
@@ -18,7 +20,7 @@ static void multiply_matrices(const double *a, const double *b, double *out)
                              a[4 * r + 2] * b[8 + c] + (c == 3 ? a[4 * r + 3] : 0);
 }
 
-static const double to_lps[12] = {1000, 0, 0, 0, 0, 0, -1000, 0, 0, 1000, 0, 0};
+const double cwi_gltf_to_lps[12] = {1000, 0, 0, 0, 0, 0, -1000, 0, 0, 1000, 0, 0};
 
 static bool is_unturned(const double *transform)
 {
@@ -58,7 +60,7 @@ static cw_status set_transform(cwi_gltf_instance *at, const double *world,
                                cw_mesh_file *metadata, cw_error *err)
 {
     double *transform = at->transform[0];
-    multiply_matrices(to_lps, world, transform);
+    cwi_gltf_multiply(cwi_gltf_to_lps, world, transform);
     for (int i = 0; i < 12; i++)
         if (!isfinite(transform[i]))
             return cwi_fail(err, CW_ERR_FORMAT, "a node's matrix is not finite");
@@ -84,63 +86,108 @@ static bool is_hidden(const double *world)
     return true;
 }
 
+cw_status cwi_gltf_place(cwi_gltf_reader *r, const cwi_gltf_node *node, const double *world,
+                         size_t number, cw_mesh_file *metadata, cw_error *err)
+{
+    const bool is_skinned = !number && cwi_gltf_is_skinned(r, node); /* its joints place it */
+    if (!is_skinned && is_hidden(world)) {
+        metadata->hidden++;
+        return CW_OK;
+    }
+    cw_status st = cwi_gltf_count_drawing(r, node, err);
+    if (st == CW_OK)
+        st = cwi_mesh_grow(r->in, &r->instances, &r->instance_capacity, r->instance_count + 1,
+                           sizeof *r->instances, err);
+    if (st != CW_OK)
+        return st;
+    cwi_gltf_instance *at = &r->instances[r->instance_count++];
+    *at = (cwi_gltf_instance){.mesh = node->mesh, .node = node, .number = number};
+    return set_transform(at, world, metadata, err);
+}
+
+/* Adds a node to those that KHR_node_visibility hides, by its name or that of its mesh. Names that
+ * have no place become "...". */
+static void note_invisible(const cwi_gltf_scene *scene, const cwi_gltf_node *node,
+                           cw_mesh_file *metadata)
+{
+    static const char more[] = ", ...";
+    char *names = metadata->invisible_names, name[CWI_NAME_BYTES] = "";
+    const char *given = node->name ? node->name : scene->meshes[node->mesh].name;
+    size_t used = strlen(names);
+    metadata->invisible++;
+    if (!given || (used > strlen(more) && strcmp(names + used - strlen(more), more) == 0))
+        return;
+    cwi_clean_name(given, strlen(given), name);
+    const bool fits = used + strlen(name) + 2 * strlen(more) < sizeof metadata->invisible_names;
+    const char *added = fits ? name : more + 2;
+    for (const char *c = used ? ", " : ""; *c; c++)
+        names[used++] = *c;
+    memcpy(names + used, added, strlen(added) + 1);
+}
+
 /* A node whose children are to be visited. */
 typedef struct visit {
     int node, parent;
     size_t depth;
+    bool is_hidden; /* by KHR_node_visibility of a parent */
 } visit;
 
-static cw_status enter_node(cwi_gltf_reader *r, visit v, bool *visited, cw_mesh_file *metadata,
-                            cw_error *err)
+static bool has_instances(const cwi_gltf_node *n)
+{
+    return n->placings[0] >= 0 || n->placings[1] >= 0 || n->placings[2] >= 0;
+}
+
+static cw_status enter_node(cwi_gltf_reader *r, visit v, cw_mesh_file *metadata, cw_error *err)
 {
     static const double unit[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
     const cwi_gltf_scene *scene = &r->scene;
     if (v.node < 0 || (size_t)v.node >= scene->node_count)
         return cwi_fail(err, CW_ERR_FORMAT, "node %d is named; there are %zu", v.node,
                         scene->node_count);
-    if (visited[v.node])
+    if (r->visited[v.node])
         return cwi_fail(err, CW_ERR_FORMAT, "node %d is reached in two ways, or holds itself",
                         v.node);
     if (v.depth > DEEPEST_NODE)
         return cwi_fail(err, CW_ERR_FORMAT, "nodes are nested deeper than %d", DEEPEST_NODE);
-    visited[v.node] = true;
+    r->visited[v.node] = true;
     const cwi_gltf_node *n = &scene->nodes[v.node];
     metadata->levels = n->levels > metadata->levels ? n->levels : metadata->levels;
-    multiply_matrices(v.parent < 0 ? unit : r->world[v.parent], n->local[0], r->world[v.node]);
+    cwi_gltf_multiply(v.parent < 0 ? unit : r->world[v.parent], n->local[0], r->world[v.node]);
     if (n->mesh < 0)
         return CW_OK;
     if ((size_t)n->mesh >= scene->mesh_count)
         return cwi_fail(err, CW_ERR_FORMAT, "node %d names mesh %d; there are %zu", v.node,
                         n->mesh, scene->mesh_count);
-    if (is_hidden(r->world[v.node])) {
-        metadata->hidden++;
+    const double *world = r->world[v.node];
+    if (v.is_hidden || n->is_hidden) {
+        note_invisible(scene, n, metadata);
         return CW_OK;
     }
-    cwi_gltf_instance *at = &r->instances[r->instance_count++];
-    *at = (cwi_gltf_instance){.mesh = n->mesh, .node = n};
-    return set_transform(at, r->world[v.node], metadata, err);
+    return has_instances(n) ? cwi_gltf_place_instances(r, n, world, metadata, err)
+                            : cwi_gltf_place(r, n, world, 0, metadata, err);
 }
 
 /* Walks depth first, in the order of the file. The stack cannot overflow: every node is pushed
  * by its only parent or is a root. A node that is reached in two ways is an error. */
-static cw_status walk_nodes(cwi_gltf_reader *r, visit *stack, size_t capacity, bool *visited,
+static cw_status walk_nodes(cwi_gltf_reader *r, visit *stack, size_t capacity,
                             cw_mesh_file *metadata, cw_error *err)
 {
     const cwi_gltf_scene *scene = &r->scene;
     size_t count = 0;
     for (size_t i = scene->root_count; i > 0; i--)
-        stack[count++] = (visit){scene->roots[i - 1], -1, 1};
+        stack[count++] = (visit){.node = scene->roots[i - 1], .parent = -1, .depth = 1};
     cw_status st = CW_OK;
     while (st == CW_OK && count > 0) {
         const visit v = stack[--count];
-        st = enter_node(r, v, visited, metadata, err);
+        st = enter_node(r, v, metadata, err);
         if (st != CW_OK)
             break;
         const cwi_gltf_node *n = &scene->nodes[v.node];
         if (n->end - n->first > capacity - count)
             return cwi_fail(err, CW_ERR_FORMAT, "the nodes are no tree");
         for (size_t i = n->end; i > n->first; i--)
-            stack[count++] = (visit){scene->children[i - 1], v.node, v.depth + 1};
+            stack[count++] = (visit){scene->children[i - 1], v.node, v.depth + 1,
+                                     v.is_hidden || n->is_hidden};
     }
     return st;
 }
@@ -150,13 +197,12 @@ cw_status cwi_gltf_find_instances(cwi_gltf_reader *r, cw_mesh_file *metadata, cw
     const size_t count = r->scene.node_count,
                  capacity = r->scene.root_count + r->scene.child_count;
     visit *stack = cwi_alloc_array(capacity, sizeof *stack);
-    bool *visited = cwi_alloc_zeroed(count, sizeof *visited);
+    r->visited = cwi_alloc_zeroed(count, sizeof *r->visited);
     r->world = cwi_alloc_array(count, sizeof *r->world);
-    r->instances = cwi_alloc_array(count, sizeof *r->instances);
-    cw_status st = stack && visited && r->world && r->instances
-                       ? walk_nodes(r, stack, capacity, visited, metadata, err)
+    r->drawings = cwi_alloc_zeroed(r->scene.mesh_count, sizeof *r->drawings);
+    cw_status st = stack && r->visited && r->world && r->drawings
+                       ? walk_nodes(r, stack, capacity, metadata, err)
                        : cwi_fail_memory(err);
     cwi_free(stack);
-    cwi_free(visited);
-    return st;
+    return st == CW_OK ? cwi_gltf_pose_skins(r, metadata, err) : st;
 }

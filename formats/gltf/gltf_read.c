@@ -12,7 +12,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { TRIANGLES_MODE = 4, GLB_HEADER = 12, CHUNK_HEADER = 8, FREE_COUNT = 1 << 24 };
+enum { GLB_HEADER = 12, CHUNK_HEADER = 8, FREE_COUNT = 1 << 24 };
 
 /* --- the file ---------------------------------------------------------------------------- */
 
@@ -106,20 +106,6 @@ static cw_status check_views(const cwi_gltf_scene *scene, cw_error *err)
     return st;
 }
 
-/* Names what viewers draw otherwise, for the user. */
-static void name_drawn(unsigned drawn, cw_mesh_file *metadata)
-{
-    static const char *const names[] = {"weights of morph targets", "skins",
-                                        "instances (EXT_mesh_gpu_instancing)",
-                                        "nodes hidden by KHR_node_visibility"};
-    size_t used = 0;
-    for (size_t n = 0; n < 4 && used < sizeof metadata->not_applied; n++)
-        if (drawn >> n & 1)
-            used += (size_t)snprintf(metadata->not_applied + used,
-                                     sizeof metadata->not_applied - used, "%s%s",
-                                     used ? ", " : "", names[n]);
-}
-
 static cw_status parse_json(cwi_gltf_reader *r, uint64_t at, uint64_t size,
                             cw_mesh_file *metadata, cw_error *err)
 {
@@ -136,8 +122,6 @@ static cw_status parse_json(cwi_gltf_reader *r, uint64_t at, uint64_t size,
     const bool looks_right = st == CW_OK && cwi_gltf_check_look(json, got, &fault) == CW_OK;
     if (st == CW_OK && !looks_right)
         snprintf(metadata->fault, sizeof metadata->fault, "%.159s", fault.message);
-    if (st == CW_OK)
-        name_drawn(cwi_gltf_find_drawn(json, got), metadata);
     if (st == CW_OK)
         st = cwi_gltf_blind(json, got, looks_right, err);
     if (st == CW_OK)
@@ -191,75 +175,7 @@ static uint64_t max_elements(const cwi_gltf_reader *r)
     return FREE_COUNT + r->in->file.size + largest;
 }
 
-static uint64_t claimed_count(const cwi_gltf_scene *scene, int accessor)
-{
-    const bool known = accessor >= 0 && (size_t)accessor < scene->accessor_count;
-    const uint64_t count = known ? scene->accessors[accessor].count : 0;
-    return count < UINT32_MAX ? count : UINT32_MAX;
-}
-
-/* The elements that drawing a mesh adds, as the file states them. */
-typedef struct drawing {
-    uint64_t vertices, triangles;
-    bool counted;
-} drawing;
-
-/* Counts a drawing. An empty primitive counts as a triangle, since it takes time, too. */
-static drawing count_drawing(const cwi_gltf_scene *scene, const cwi_gltf_mesh *mesh)
-{
-    drawing sum = {.counted = true};
-    for (size_t i = mesh->first; i < mesh->end; i++) {
-        const cwi_gltf_primitive *p = &scene->primitives[i];
-        const uint64_t vertices = claimed_count(scene, p->position);
-        const uint64_t corners = p->indices >= 0 ? claimed_count(scene, p->indices) : vertices;
-        const bool shared = i > mesh->first && p->position == p[-1].position;
-        sum.vertices += shared ? 0 : vertices;
-        sum.triangles += 1 + (p->mode > TRIANGLES_MODE ? corners : corners / 3);
-    }
-    return sum;
-}
-
-/* Checks the memory of the arrays while a mesh is built: points are doubles until the end. */
-static cw_status check_memory(const cwi_gltf_reader *r, const drawing *sum, cw_error *err)
-{
-    const uint64_t limit = r->in->desc.max_bytes;
-    const uint64_t bytes =
-        3 * sizeof(double) * sum->vertices + 3 * sizeof(uint32_t) * sum->triangles;
-    if (!limit || bytes <= limit)
-        return CW_OK;
-    char text[CWI_MEMORY_TEXT];
-    cwi_print_memory(limit, text);
-    return cwi_fail(
-        err, CW_ERR_LIMIT,
-        "the scene draws its triangles so often that they need more memory than the "
-        "%s allowed (desc->max_bytes)",
-        text);
-}
-
-/* Adds up meshes that are drawn repeatedly, before the first one is drawn. */
-static cw_status check_repeats(const cwi_gltf_reader *r, cw_error *err)
-{
-    const size_t count = r->scene.mesh_count;
-    drawing *each = cwi_alloc_zeroed(count, sizeof *each), sum = {0};
-    cw_status st = each ? CW_OK : cwi_fail_memory(err);
-    for (size_t i = 0; i < r->instance_count && st == CW_OK; i++) {
-        const int mesh = r->instances[i].mesh;
-        sum.vertices += each[mesh].vertices;
-        sum.triangles += each[mesh].triangles;
-        st =
-            cwi_gltf_limit(r, sum.vertices > sum.triangles ? sum.vertices : sum.triangles, err);
-        if (st == CW_OK)
-            st = cwi_mesh_limit_triangles(r->in, sum.triangles, err);
-        if (st == CW_OK)
-            st = check_memory(r, &sum, err);
-        if (!each[mesh].counted)
-            each[mesh] = count_drawing(&r->scene, &r->scene.meshes[mesh]);
-    }
-    cwi_free(each);
-    return st;
-}
-
-/* Copies the label of a node, with the colour of its material if it has one. */
+/* Copies the label of a node, with the colour of its material if it has one alone. */
 static cw_label label_of(const cwi_gltf_reader *r, const cwi_gltf_instance *at)
 {
     const cwi_gltf_node *n = at->node;
@@ -272,8 +188,9 @@ static cw_label label_of(const cwi_gltf_reader *r, const cwi_gltf_instance *at)
                       .type = {n->codes[3], n->codes[4], n->codes[5]}};
     memcpy(label.color, n->color, sizeof label.color);
     const cwi_gltf_material *m =
-        mesh->first < mesh->end ? cwi_gltf_material_of(r, &r->scene.primitives[mesh->first])
-                                : NULL;
+        mesh->first + 1 == mesh->end
+            ? cwi_gltf_material_of(r, &r->scene.primitives[mesh->first])
+            : NULL;
     if (m && !m->is_plain) {
         label.has_color = true;
         cwi_gltf_base_color(m, label.color);
@@ -281,40 +198,67 @@ static cw_label label_of(const cwi_gltf_reader *r, const cwi_gltf_instance *at)
     return label;
 }
 
-/* Begins the part of an instance: by the name of its node, else of its mesh. */
+/* Begins the part of an instance: by the name of its node, else of its mesh, with its number if the node has several. */
 static cw_status begin_part(cwi_gltf_reader *r, const cwi_gltf_instance *at, cw_error *err)
 {
     const char *mesh = r->scene.meshes[at->mesh].name;
-    const char *name = at->node->name ? at->node->name : mesh ? mesh : "";
-    cw_status st = cwi_mesh_begin_part(r->in, name, r->build.triangle_count, err);
+    const char *given = at->node->name ? at->node->name : mesh ? mesh : "";
+    char name[CWI_NAME_BYTES + 24];
+    if (at->number)
+        snprintf(name, sizeof name, "%.*s%s%zu", CWI_NAME_BYTES - 1, given, *given ? " " : "",
+                 at->number);
+    cw_status st =
+        cwi_mesh_begin_part(r->in, at->number ? name : given, r->build.triangle_count, err);
     if (st != CW_OK || !at->node->has_label)
         return st;
     const cw_label label = label_of(r, at);
     return cwi_mesh_label_part(r->in, &label, err);
 }
 
+/* Names what viewers draw otherwise, for the user. */
+static void name_not_applied(unsigned features, cw_mesh_file *metadata)
+{
+    static const char *const names[] = {"skins of meshes that Draco compressed",
+                                        "skins of instanced nodes", "colours of morph targets"};
+    size_t used = 0;
+    for (size_t n = 0; n < 3 && used < sizeof metadata->not_applied; n++)
+        if (features >> n & 1)
+            used += (size_t)snprintf(metadata->not_applied + used,
+                                     sizeof metadata->not_applied - used, "%s%s",
+                                     used ? ", " : "", names[n]);
+}
+
+static cw_status draw_instances(cwi_gltf_reader *r, cw_mesh_file *metadata, cw_error *err)
+{
+    cw_status st = CW_OK;
+    for (size_t i = 0; i < r->instance_count && st == CW_OK; i++) {
+        const cwi_gltf_instance *at = &r->instances[i];
+        r->keeps_shapes = i + 1 < r->instance_count && at[1].node == at->node;
+        st = cwi_progress(&r->in->desc.progress, "reading",
+                          (double)i / (double)r->instance_count, err);
+        if (st == CW_OK)
+            st = begin_part(r, at, err);
+        if (st == CW_OK)
+            st = cwi_gltf_add_instance(r, at, metadata, err);
+    }
+    return st;
+}
+
 static cw_status build_scene(cwi_gltf_reader *r, cw_mesh *mesh, cw_mesh_file *metadata,
                              cw_error *err)
 {
+    r->max = max_elements(r);
     cw_status st = cwi_gltf_find_instances(r, metadata, err);
     r->shifted = st == CW_OK && is_shifted(r);
-    r->max = max_elements(r);
     for (size_t i = 0; i < r->scene.material_count; i++)
         r->any_base = r->any_base || !r->scene.materials[i].is_plain;
     metadata->parts = 0;
     if (st == CW_OK)
-        st = check_repeats(r, err);
-    for (size_t i = 0; i < r->instance_count && st == CW_OK; i++) {
-        st = cwi_progress(&r->in->desc.progress, "reading",
-                          (double)i / (double)r->instance_count, err);
-        if (st == CW_OK)
-            st = begin_part(r, &r->instances[i], err);
-        if (st == CW_OK)
-            st = cwi_gltf_add_instance(r, &r->instances[i], metadata, err);
-    }
+        st = draw_instances(r, metadata, err);
     if (st != CW_OK)
         return st;
     describe_mesh(r, mesh, metadata);
+    name_not_applied(r->not_applied, metadata);
     cwi_say_left_out(metadata, r->has_texture, "textures");
     cwi_say_left_out(metadata, r->has_texcoords, "texture coordinates");
     mesh->colors = r->colors;
@@ -349,6 +293,10 @@ static cw_status read_scene(cwi_mesh_input *in, bool binary, cw_mesh *mesh,
     cwi_arrays_free(&r.arrays);
     cwi_gltf_unpacker_close(&r.unpacker);
     cwi_free(r.world);
+    cwi_free(r.visited);
+    cwi_free(r.drawings);
+    cwi_gltf_free_poses(&r);
+    cwi_gltf_free_shapes(&r);
     cwi_free(r.instances);
     cwi_free(r.normals);
     cwi_free(r.colors);

@@ -6,13 +6,44 @@
 #include "formats/gltf/gltf_scene.h"
 #include "formats/mesh/face_colors.h"
 
-/* A node of the scene that has a mesh. */
+/* A skin at rest: the maps of its joints, from the mesh to LPS millimetres. */
+typedef struct cwi_gltf_pose {
+    double (*joints)[12]; /* count of them; NULL: not computed yet */
+    size_t count;
+    bool is_hidden; /* every joint has a scale of 0 */
+} cwi_gltf_pose;
+
+/* A mesh that a node of the scene places. */
 typedef struct cwi_gltf_instance {
     int mesh;
     const cwi_gltf_node *node;
+    size_t number;          /* among the instances of its node, from 1 on; 0: it is the node */
     double transform[3][4]; /* to LPS millimetres */
     bool unturned;          /* only a translation */
+    const cwi_gltf_pose *pose; /* it places the vertices; NULL: the transform does */
 } cwi_gltf_instance;
+
+/* The elements that drawing a mesh adds, as the file states them. */
+typedef struct cwi_gltf_drawing {
+    uint64_t vertices, triangles, displaced; /* displaced: vertices of morph targets */
+    bool counted;
+} cwi_gltf_drawing;
+
+/* The opened arrays of a primitive. */
+typedef struct cwi_gltf_shape {
+    cwi_gltf_numbers position, normal, color, indices;
+    double *morphed[2]; /* positions and normals of morphed vertices, 3 each; NULL: unchanged */
+    cwi_gltf_numbers joints[CWI_GLTF_SETS], weights[CWI_GLTF_SETS];
+    size_t sets;    /* sets of joints that place the vertices */
+    bool is_loaded; /* all are open that are used */
+} cwi_gltf_shape;
+
+/* Features of a scene that viewers apply, and this reader does not. */
+enum {
+    CWI_GLTF_PACKED_SKINS = 1,    /* those of meshes that Draco compressed */
+    CWI_GLTF_INSTANCED_SKINS = 2, /* those of nodes with instances */
+    CWI_GLTF_MORPHED_COLORS = 4   /* colours of morph targets */
+};
 
 typedef struct cwi_gltf_reader {
     cwi_mesh_input *in;
@@ -21,10 +52,19 @@ typedef struct cwi_gltf_reader {
     cwi_arrays arrays; /* of the primitive that was decoded last */
     cwi_gltf_scene scene;
     double (*world)[12]; /* of each node */
+    bool *visited;       /* of each node: it is in the scene, and world is set */
     cwi_gltf_instance *instances;
-    size_t instance_count;
-    bool shifted; /* every instance is moved by the mesh's origin, and nothing else */
-    uint64_t max; /* maximum of vertices, and of triangles, that may be drawn */
+    size_t instance_count, instance_capacity;
+    cwi_gltf_pose *poses;       /* of each skin */
+    cwi_gltf_drawing *drawings; /* of each mesh */
+    cwi_gltf_drawing drawn;     /* repeatedly, by all instances so far */
+    cwi_gltf_shape *shapes;     /* of the primitives of a mesh that is drawn repeatedly, ... */
+    size_t shape_count;
+    bool keeps_shapes;    /* ... which stay open for the next instance of its node */
+    bool is_mirrored;     /* the vertices added last have their triangles reversed */
+    unsigned not_applied; /* features */
+    bool shifted;         /* every instance is moved by the mesh's origin, and nothing else */
+    uint64_t max;         /* maximum of vertices, and of triangles, that may be drawn */
     cwi_mesh_build build;
     float *normals;            /* room for one per point; NULL: none so far */
     uint8_t *colors;           /* of vertices, where a primitive has COLOR_0 */
@@ -40,9 +80,70 @@ typedef struct cwi_gltf_reader {
 CW_NODISCARD cw_status cwi_gltf_find_instances(cwi_gltf_reader *r, cw_mesh_file *metadata,
                                                cw_error *err);
 
+/* Counts another drawing of a node's mesh, before it is drawn.
+ * Returns CW_ERR_LIMIT where the scene repeats its meshes too often. */
+CW_NODISCARD cw_status cwi_gltf_count_drawing(cwi_gltf_reader *r, const cwi_gltf_node *node,
+                                              cw_error *err);
+
+/* The map of glTF's metres, +Y up, to LPS millimetres. */
+extern const double cwi_gltf_to_lps[12];
+
+/* Multiplies two affine maps: the result applies b first. */
+void cwi_gltf_multiply(const double *a, const double *b, double *out);
+
+/* Adds an instance of a node's mesh with a map to the scene. number: as in cwi_gltf_instance. */
+CW_NODISCARD cw_status cwi_gltf_place(cwi_gltf_reader *r, const cwi_gltf_node *node,
+                                      const double *world, size_t number,
+                                      cw_mesh_file *metadata, cw_error *err);
+
+/* Adds the instances that EXT_mesh_gpu_instancing gives a node. */
+CW_NODISCARD cw_status cwi_gltf_place_instances(cwi_gltf_reader *r, const cwi_gltf_node *node,
+                                                const double *world, cw_mesh_file *metadata,
+                                                cw_error *err);
+
+/* Returns true if a skin moves the primitives of a node's mesh. */
+bool cwi_gltf_is_skinned(const cwi_gltf_reader *r, const cwi_gltf_node *node);
+
+/* Poses the instances that have skins, when all nodes of the scene have their place.
+ * Returns CW_ERR_FORMAT for joints or matrices that do not fit, CW_ERR_LIMIT, CW_ERR_NO_MEMORY */
+CW_NODISCARD cw_status cwi_gltf_pose_skins(cwi_gltf_reader *r, cw_mesh_file *metadata,
+                                           cw_error *err);
+void cwi_gltf_free_poses(cwi_gltf_reader *r);
+
+/* Opens the joints and weights of a primitive with `count` vertices, if a skin moves it. */
+CW_NODISCARD cw_status cwi_gltf_open_influences(cwi_gltf_reader *r, const cwi_gltf_instance *at,
+                                                const cwi_gltf_primitive *p, size_t count,
+                                                cwi_gltf_shape *shape, cw_error *err);
+
+/* Computes the map of vertex v to LPS millimetres: the weighted sum of its joints' maps.
+ * Returns CW_ERR_FORMAT for a joint that the skin does not have, or a negative weight. */
+CW_NODISCARD cw_status cwi_gltf_blend_joints(const cwi_gltf_pose *pose,
+                                             const cwi_gltf_shape *shape, size_t v,
+                                             double out[12], cw_error *err);
+
+/* Computes the positions, or the normals, of a primitive that weights of morph targets displace:
+ * 3 for each of the numbers. *morphed stays NULL where none does. */
+CW_NODISCARD cw_status cwi_gltf_morph(cwi_gltf_reader *r, const cwi_gltf_node *node,
+                                      const cwi_gltf_primitive *p, bool normals,
+                                      const cwi_gltf_numbers *numbers, double **morphed,
+                                      cw_mesh_file *metadata, cw_error *err);
+
+/* Opens an accessor of `count` elements of min to max numbers. what: its use, for messages. */
+CW_NODISCARD cw_status cwi_gltf_open_attribute(const cwi_gltf_reader *r, int accessor,
+                                               const char *what, size_t count, int min, int max,
+                                               cwi_gltf_numbers *numbers, cw_error *err);
+
+/* Adds the vertices of a primitive that an instance places. */
+CW_NODISCARD cw_status cwi_gltf_add_vertices(cwi_gltf_reader *r, const cwi_gltf_instance *at,
+                                             const cwi_gltf_primitive *p, cwi_gltf_shape *shape,
+                                             cw_mesh_file *metadata, cw_error *err);
+
 /* Adds the vertices and triangles of one instance. */
 CW_NODISCARD cw_status cwi_gltf_add_instance(cwi_gltf_reader *r, const cwi_gltf_instance *at,
                                              cw_mesh_file *metadata, cw_error *err);
+
+/* Closes the arrays that stay open for the next instance. */
+void cwi_gltf_free_shapes(cwi_gltf_reader *r);
 
 /* Returns the material of a primitive, or NULL. */
 const cwi_gltf_material *cwi_gltf_material_of(const cwi_gltf_reader *r,

@@ -47,6 +47,10 @@ void cwi_gltf_scene_free(cwi_gltf_scene *scene)
     cwi_free(scene->children);
     cwi_free(scene->roots);
     cwi_free(scene->materials);
+    cwi_free(scene->targets);
+    cwi_free(scene->skins);
+    cwi_free(scene->joints);
+    cwi_free(scene->weights);
     *scene = (cwi_gltf_scene){0};
 }
 
@@ -80,7 +84,9 @@ static const column columns[] = {
     COLUMN(accessors, accessor_count), COLUMN(primitives, primitive_count),
     COLUMN(meshes, mesh_count),        COLUMN(nodes, node_count),
     COLUMN(children, child_count),     COLUMN(roots, root_count),
-    COLUMN(materials, material_count),
+    COLUMN(materials, material_count), COLUMN(targets, target_count),
+    COLUMN(skins, skin_count),         COLUMN(joints, joint_count),
+    COLUMN(weights, weight_count),
 };
 #undef COLUMN
 enum { COLUMNS = sizeof columns / sizeof *columns };
@@ -212,6 +218,11 @@ static void mend_bool(bool *b)
     *b = byte != 0;
 }
 
+static bool is_range(size_t first, size_t end, size_t count)
+{
+    return first <= end && end <= count;
+}
+
 /* Checks the scene. Our own module keeps these rules, but its process may have been taken
  * over. */
 static bool mend_scene(cwi_gltf_scene *s)
@@ -220,18 +231,30 @@ static bool mend_scene(cwi_gltf_scene *s)
         cwi_gltf_accessor *a = &s->accessors[i];
         mend_bool(&a->normalized);
         mend_bool(&a->has_bounds);
-        if (a->numbers < 0 || a->numbers > 4)
+        if (a->numbers < 0 || a->numbers > 16)
             return false;
     }
-    for (size_t i = 0; i < s->primitive_count; i++)
-        mend_bool(&s->primitives[i].has_texcoords);
+    for (size_t i = 0; i < s->primitive_count; i++) {
+        cwi_gltf_primitive *p = &s->primitives[i];
+        mend_bool(&p->has_texcoords);
+        if (!is_range(p->first_target, p->end_target, s->target_count))
+            return false;
+    }
+    for (size_t i = 0; i < s->target_count; i++)
+        mend_bool(&s->targets[i].has_color);
+    for (size_t i = 0; i < s->skin_count; i++)
+        if (!is_range(s->skins[i].first, s->skins[i].end, s->joint_count))
+            return false;
     for (size_t i = 0; i < s->material_count; i++) {
         mend_bool(&s->materials[i].is_plain);
         mend_bool(&s->materials[i].has_texture);
     }
-    for (size_t i = 0; i < s->mesh_count; i++)
-        if (s->meshes[i].first > s->meshes[i].end || s->meshes[i].end > s->primitive_count)
+    for (size_t i = 0; i < s->mesh_count; i++) {
+        const cwi_gltf_mesh *m = &s->meshes[i];
+        if (!is_range(m->first, m->end, s->primitive_count) ||
+            !is_range(m->first_weight, m->end_weight, s->weight_count))
             return false;
+    }
     for (size_t i = 0; i < s->node_count; i++) {
         cwi_gltf_node *n = &s->nodes[i];
         mend_bool(&n->lps);
@@ -239,7 +262,9 @@ static bool mend_scene(cwi_gltf_scene *s)
         mend_bool(&n->has_affine);
         mend_bool(&n->has_label);
         mend_bool(&n->has_color);
-        if (n->first > n->end || n->end > s->child_count)
+        mend_bool(&n->is_hidden);
+        if (!is_range(n->first, n->end, s->child_count) ||
+            !is_range(n->first_weight, n->end_weight, s->weight_count))
             return false;
     }
     return true;
@@ -320,11 +345,13 @@ static cw_status make_json(void *state, int fd, const void *request, void *share
 /* Returns an upper bound, far above the JSON's size. Unused memory is never touched. */
 static size_t capacity_for_json(const cwi_gltf_document *d)
 {
-    enum { BASE = 1 << 20, PER_PIECE = 16 << 10, WORST_ESCAPE = 6 };
-    size_t words = 0;
+    enum { BASE = 1 << 20, PER_PIECE = 16 << 10, PER_GROUP = 2 << 10, WORST_ESCAPE = 6 };
+    size_t words = 0, groups = 0;
+    for (size_t i = 0; i < d->count; i++)
+        groups += d->pieces[i].groups.count;
     for (size_t i = 0; i < d->provenance_count; i++)
         words += strlen(d->provenance[i].key) + strlen(d->provenance[i].value);
-    return BASE + PER_PIECE * d->count + WORST_ESCAPE * words;
+    return BASE + PER_PIECE * d->count + PER_GROUP * groups + WORST_ESCAPE * words;
 }
 
 static cw_status take_json(const void *shared, char **json, size_t *size, cw_error *err)

@@ -31,7 +31,8 @@ static bool is_wanted(const char *key, size_t length, bool keeps_look)
 {
     static const char *const expected[] = {
         "asset",  "scene",     "scenes",      "nodes",
-        "meshes", "accessors", "bufferViews", "extensionsRequired"};
+        "meshes", "accessors", "bufferViews", "extensionsRequired",
+        "skins"};
     for (size_t i = 0; i < sizeof expected / sizeof *expected; i++)
         if (strlen(expected[i]) == length && memcmp(key, expected[i], length) == 0)
             return true;

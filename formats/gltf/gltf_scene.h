@@ -40,12 +40,21 @@ typedef struct cwi_gltf_accessor {
     int64_t view; /* -1: none */
     uint64_t offset, count;
     int component; /* 5120 to 5126 */
-    int numbers;   /* 1 to 4; 0: a matrix */
+    int numbers;   /* 1 to 4, or 16 of a matrix of floats; 0: another matrix */
     bool normalized;
     cwi_gltf_sparse sparse;
     bool has_bounds; /* of 3 numbers */
     double min[3], max[3];
 } cwi_gltf_accessor;
+
+/* The displacements of a morph target: accessors, or -1. */
+typedef struct cwi_gltf_target {
+    int position, normal;
+    bool has_color; /* it changes COLOR_0, too */
+} cwi_gltf_target;
+
+/* The sets of four joints and weights of a vertex that are read. */
+enum { CWI_GLTF_SETS = 2 };
 
 typedef struct cwi_gltf_primitive {
     int mode; /* 0 to 6 */
@@ -53,6 +62,8 @@ typedef struct cwi_gltf_primitive {
     int draco; /* the view of KHR_draco_mesh_compression; -1: not compressed */
     int draco_position, draco_normal, draco_color; /* Draco's numbers of attributes; or -1 */
     int material;
+    int joints[CWI_GLTF_SETS], weights[CWI_GLTF_SETS];
+    size_t first_target, end_target;
     bool has_texcoords;
 } cwi_gltf_primitive;
 
@@ -63,11 +74,17 @@ typedef struct cwi_gltf_material {
 } cwi_gltf_material;
 
 typedef struct cwi_gltf_mesh {
-    size_t first, end; /* of primitives */
-    char *name;        /* or NULL */
+    size_t first, end;               /* of primitives */
+    char *name;                      /* or NULL */
+    size_t first_weight, end_weight; /* of morph targets */
 } cwi_gltf_mesh;
 
-enum { CWI_GLTF_CODES = 6 };
+typedef struct cwi_gltf_skin {
+    size_t first, end; /* of joints */
+    int inverse_bind;  /* accessor of matrices; -1: they are the identity */
+} cwi_gltf_skin;
+
+enum { CWI_GLTF_CODES = 6, CWI_GLTF_PLACINGS = 3 };
 
 typedef struct cwi_gltf_node {
     int mesh;
@@ -75,9 +92,14 @@ typedef struct cwi_gltf_node {
     double local[3][4];               /* to the parent's frame */
     bool lps, has_origin, has_affine; /* flags that our writer stores in extras */
     double origin[3], affine[3][4];
-    size_t levels;  /* number of levels that MSFT_lod names */
-    char *name;     /* or NULL */
-    bool has_label; /* as our writer stores it in extras: */
+    int skin;
+    size_t first_weight, end_weight; /* of morph targets; none: those of the mesh */
+    bool is_hidden;                  /* by KHR_node_visibility, with its children */
+    int placings[CWI_GLTF_PLACINGS]; /* of EXT_mesh_gpu_instancing: accessors of translations,
+                                        rotations and scales; -1: none */
+    size_t levels;                   /* number of levels that MSFT_lod names */
+    char *name;                      /* or NULL */
+    bool has_label;                  /* as our writer stores it in extras: */
     bool has_color;
     uint32_t label, layer;
     uint8_t color[4];
@@ -94,10 +116,34 @@ typedef struct cwi_gltf_scene {
     cwi_gltf_mesh *meshes;
     cwi_gltf_node *nodes;
     cwi_gltf_material *materials;
-    int *children, *roots; /* nodes */
+    cwi_gltf_target *targets;
+    cwi_gltf_skin *skins;
+    int *children, *roots, *joints; /* nodes */
+    double *weights;                /* of morph targets */
     size_t buffer_count, view_count, accessor_count, primitive_count, mesh_count, node_count,
-        child_count, root_count, material_count;
+        child_count, root_count, material_count, target_count, skin_count, joint_count,
+        weight_count;
 } cwi_gltf_scene;
+
+/* Computes translation times rotation times scale. The quaternion need not have unit length. */
+static inline void cwi_gltf_compose(const double translation[3], const double rotation[4],
+                                    const double scale[3], double out[12])
+{
+    const double *q = rotation, *s = scale;
+    const double f = 2 / (q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
+    const double turned[3][3] = {
+        {1 - f * (q[1] * q[1] + q[2] * q[2]), f * (q[0] * q[1] - q[2] * q[3]),
+         f * (q[0] * q[2] + q[1] * q[3])},
+        {f * (q[0] * q[1] + q[2] * q[3]), 1 - f * (q[0] * q[0] + q[2] * q[2]),
+         f * (q[1] * q[2] - q[0] * q[3])},
+        {f * (q[0] * q[2] - q[1] * q[3]), f * (q[1] * q[2] + q[0] * q[3]),
+         1 - f * (q[0] * q[0] + q[1] * q[1])}};
+    for (int r = 0; r < 3; r++) {
+        for (int c = 0; c < 3; c++)
+            out[4 * r + c] = turned[r][c] * s[c];
+        out[4 * r + 3] = translation[r];
+    }
+}
 
 void cwi_gltf_scene_free(cwi_gltf_scene *scene);
 
@@ -116,17 +162,6 @@ CW_NODISCARD cw_status cwi_gltf_check(const char *json, size_t size, cw_error *e
 /* Checks members that describe how a surface looks, which are not read.
  * Returns CW_ERR_FORMAT as cwi_gltf_check() does. */
 CW_NODISCARD cw_status cwi_gltf_check_look(const char *json, size_t size, cw_error *err);
-
-/* Features of a scene that viewers apply, and this reader does not. */
-enum {
-    CWI_GLTF_DRAWN_MORPHED = 1,   /* weights of morph targets */
-    CWI_GLTF_DRAWN_SKINNED = 2,   /* skins, at rest */
-    CWI_GLTF_DRAWN_INSTANCES = 4, /* EXT_mesh_gpu_instancing */
-    CWI_GLTF_DRAWN_HIDDEN = 8     /* nodes that KHR_node_visibility hides */
-};
-
-/* Finds these in JSON that cwi_gltf_check() has accepted. */
-unsigned cwi_gltf_find_drawn(const char *json, size_t size);
 
 #define CWI_GLTF_HIDDEN_LOD "MSFT_LOD"
 

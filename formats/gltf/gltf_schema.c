@@ -19,16 +19,13 @@ typedef enum value_kind {
     WHOLE,     /* a whole number from min to max, a multiple of step */
     FRACTIONS, /* up to `max` numbers from 0 to 1 */
     FRACTION,
-    NUMBERS, /* up to `max` numbers; none is larger than `largest`, unless that is 0 */
+    NUMBERS, /* `max` numbers, or any count if that is 0; none is larger than `largest`, unless
+                that is 0 */
     BOOLEAN,
     STRING,
     STRINGS,
-    WORD,        /* a string out of `choices` */
-    NUMBER_CODE, /* a number out of `choices` */
-    /* Anything, of which a mark is kept: */
-    PRESENT,
-    NOT_ZERO, /* a list with another number than 0 */
-    IS_FALSE
+    WORD,       /* a string out of `choices` */
+    NUMBER_CODE /* a number out of `choices` */
 } value_kind;
 
 typedef enum list_name {
@@ -38,12 +35,13 @@ typedef enum list_name {
     MESHES,
     NODES,
     SCENES,
+    SKINS,
     LIST_COUNT,
     NO_LIST = LIST_COUNT
 } list_name;
 
-static const char *const list_names[LIST_COUNT] = {"buffers", "bufferViews", "accessors",
-                                                   "meshes",  "nodes",       "scenes"};
+static const char *const list_names[LIST_COUNT] = {
+    "buffers", "bufferViews", "accessors", "meshes", "nodes", "scenes", "skins"};
 
 typedef struct rule {
     const char *key; /* NULL ends a table */
@@ -55,7 +53,6 @@ typedef struct rule {
     double largest;             /* of NUMBERS */
     const char *choices;        /* words separated by blanks */
     const struct rule *members; /* of an object */
-    unsigned mark;              /* of what is kept: a CWI_GLTF_DRAWN bit */
 } rule;
 
 /* The maximum of small numbers. tinygltf keeps whole numbers of extensions and of "sparse" in
@@ -76,16 +73,37 @@ static const rule primitive_extensions[] = {
 static const rule attributes[] = {{.key = "POSITION", .kind = INDEX, .list = ACCESSORS},
                                   {.key = "NORMAL", .kind = INDEX, .list = ACCESSORS},
                                   {.key = "COLOR_0", .kind = INDEX, .list = ACCESSORS},
+                                  {.key = "JOINTS_0", .kind = INDEX, .list = ACCESSORS},
+                                  {.key = "JOINTS_1", .kind = INDEX, .list = ACCESSORS},
+                                  {.key = "WEIGHTS_0", .kind = INDEX, .list = ACCESSORS},
+                                  {.key = "WEIGHTS_1", .kind = INDEX, .list = ACCESSORS},
                                   {0}};
+static const rule target[] = {{.key = "POSITION", .kind = INDEX, .list = ACCESSORS},
+                              {.key = "NORMAL", .kind = INDEX, .list = ACCESSORS},
+                              {0}};
 static const rule primitive[] = {
     {.key = "attributes", .kind = OBJECT, .members = attributes, .required = true},
     {.key = "indices", .kind = INDEX, .list = ACCESSORS},
     {.key = "mode", .kind = WHOLE, .max = 6},
+    {.key = "targets", .kind = OBJECTS, .members = target},
     {.key = "extensions", .kind = OBJECT, .members = primitive_extensions},
     {0}};
 static const rule mesh[] = {
-    {.key = "primitives", .kind = OBJECTS, .members = primitive, .required = true}, {0}};
+    {.key = "primitives", .kind = OBJECTS, .members = primitive, .required = true},
+    {.key = "weights", .kind = NUMBERS},
+    {0}};
 
+static const rule placings[] = {{.key = "TRANSLATION", .kind = INDEX, .list = ACCESSORS},
+                                {.key = "ROTATION", .kind = INDEX, .list = ACCESSORS},
+                                {.key = "SCALE", .kind = INDEX, .list = ACCESSORS},
+                                {0}};
+static const rule instancing[] = {{.key = "attributes", .kind = OBJECT, .members = placings},
+                                  {0}};
+static const rule visibility[] = {{.key = "visible", .kind = BOOLEAN}, {0}};
+static const rule node_extensions[] = {
+    {.key = "EXT_mesh_gpu_instancing", .kind = OBJECT, .members = instancing},
+    {.key = "KHR_node_visibility", .kind = OBJECT, .members = visibility},
+    {0}};
 static const rule node[] = {
     {.key = "mesh", .kind = INDEX, .list = MESHES},
     {.key = "children", .kind = INDICES, .list = NODES},
@@ -93,8 +111,13 @@ static const rule node[] = {
     {.key = "translation", .kind = NUMBERS, .max = 3},
     {.key = "rotation", .kind = NUMBERS, .max = 4, .largest = 1.001}, /* allows for rounding */
     {.key = "scale", .kind = NUMBERS, .max = 3},
-    {.key = "extensions", .kind = OBJECT},
+    {.key = "skin", .kind = INDEX, .list = SKINS},
+    {.key = "weights", .kind = NUMBERS},
+    {.key = "extensions", .kind = OBJECT, .members = node_extensions},
     {0}};
+static const rule skin[] = {{.key = "joints", .kind = INDICES, .list = NODES, .required = true},
+                            {.key = "inverseBindMatrices", .kind = INDEX, .list = ACCESSORS},
+                            {0}};
 static const rule scene[] = {{.key = "nodes", .kind = INDICES, .list = NODES}, {0}};
 
 static const rule sparse_indices[] = {
@@ -156,6 +179,7 @@ static const rule outermost[] = {
     {.key = "scene", .kind = INDEX, .list = SCENES},
     {.key = "scenes", .kind = OBJECTS, .members = scene, .list = SCENES},
     {.key = "nodes", .kind = OBJECTS, .members = node, .list = NODES},
+    {.key = "skins", .kind = OBJECTS, .members = skin, .list = SKINS},
     {.key = "meshes", .kind = OBJECTS, .members = mesh, .list = MESHES},
     {.key = "accessors", .kind = OBJECTS, .members = accessor, .list = ACCESSORS},
     {.key = "bufferViews", .kind = OBJECTS, .members = view, .list = VIEWS},
@@ -175,24 +199,6 @@ static const rule material[] = {
     {0}};
 static const rule looks[] = {{.key = "materials", .kind = OBJECTS, .members = material}, {0}};
 
-/* How viewers draw a scene otherwise than by the positions and nodes that are read. */
-static const rule visibility[] = {
-    {.key = "visible", .kind = IS_FALSE, .mark = CWI_GLTF_DRAWN_HIDDEN}, {0}};
-static const rule drawn_extensions[] = {
-    {.key = "EXT_mesh_gpu_instancing", .kind = PRESENT, .mark = CWI_GLTF_DRAWN_INSTANCES},
-    {.key = "KHR_node_visibility", .kind = OBJECT, .members = visibility},
-    {0}};
-static const rule drawn_node[] = {
-    {.key = "weights", .kind = NOT_ZERO, .mark = CWI_GLTF_DRAWN_MORPHED},
-    {.key = "skin", .kind = PRESENT, .mark = CWI_GLTF_DRAWN_SKINNED},
-    {.key = "extensions", .kind = OBJECT, .members = drawn_extensions},
-    {0}};
-static const rule drawn_mesh[] = {
-    {.key = "weights", .kind = NOT_ZERO, .mark = CWI_GLTF_DRAWN_MORPHED}, {0}};
-static const rule drawn[] = {{.key = "nodes", .kind = OBJECTS, .members = drawn_node},
-                             {.key = "meshes", .kind = OBJECTS, .members = drawn_mesh},
-                             {0}};
-
 /* --- walking through JSON ---------------------------------------------------------------- */
 
 /* A walk through the JSON. It checks only the grammar that it needs; tinygltf refuses the
@@ -201,7 +207,6 @@ typedef struct walker {
     const char *json;
     size_t size, at;
     size_t counts[LIST_COUNT];
-    unsigned marks;
     cw_error *err;
 } walker;
 
@@ -470,7 +475,8 @@ static cw_status check_list(walker *w, const rule *r, value_kind one, const json
     }
     if (st == CW_OK && !take_char(w, ']'))
         return fail_broken(w);
-    if (st == CW_OK && (r->kind == NUMBERS || r->kind == FRACTIONS) && at.index != r->max) {
+    if (st == CW_OK && (r->kind == NUMBERS || r->kind == FRACTIONS) && r->max &&
+        at.index != r->max) {
         char path[PATH_BYTES] = "";
         put_path(p, path);
         return cwi_fail(w->err, CW_ERR_FORMAT, "%s: %zu numbers; %llu were expected", path,
@@ -561,26 +567,6 @@ static cw_status check_object(walker *w, const rule *rules, const json_path *p)
     return st == CW_OK ? check_required(w, rules, seen, p) : st;
 }
 
-/* Keeps the mark of a value that is there, false, or a list with another number than 0. */
-static cw_status keep_mark(walker *w, const rule *r)
-{
-    next_char(w);
-    const size_t start = w->at;
-    if (!skip_value(w))
-        return fail_broken(w);
-    bool is_kept = r->kind == PRESENT;
-    if (r->kind == IS_FALSE)
-        is_kept = w->at - start == 5 && memcmp(w->json + start, "false", 5) == 0;
-    for (size_t i = start; i < w->at && r->kind == NOT_ZERO && !is_kept; i++) {
-        const char c = w->json[i];
-        is_kept = c >= '1' && c <= '9';
-        while ((c == 'e' || c == 'E') && i + 1 < w->at && !strchr(",]", w->json[i + 1]))
-            i++; /* an exponent says nothing of 0 */
-    }
-    w->marks |= is_kept ? r->mark : 0;
-    return CW_OK;
-}
-
 static cw_status check_value(walker *w, const rule *r, const json_path *p)
 {
     next_char(w);
@@ -609,10 +595,6 @@ static cw_status check_value(walker *w, const rule *r, const json_path *p)
     case BOOLEAN:
     case STRING:
         return check_plain(w, r, p);
-    case PRESENT:
-    case NOT_ZERO:
-    case IS_FALSE:
-        return keep_mark(w, r);
     case ANYTHING:
     default:
         return skip_value(w) ? CW_OK : fail_broken(w);
@@ -670,10 +652,4 @@ cw_status cwi_gltf_check_look(const char *json, size_t size, cw_error *err)
 {
     walker w = {.json = json, .size = size, .err = err};
     return check_object(&w, looks, NULL);
-}
-
-unsigned cwi_gltf_find_drawn(const char *json, size_t size)
-{
-    walker w = {.json = json, .size = size};
-    return check_object(&w, drawn, NULL) == CW_OK ? w.marks : 0;
 }

@@ -13,26 +13,10 @@
 namespace
 {
 
-// Allocates an array for C, which frees all arrays, even those of an incomplete scene.
-template <typename T>
-cw_status allocate(T *&array, size_t &count, size_t expected, cw_error *err)
-{
-    array = static_cast<T *>(cwi_alloc_zeroed(expected, sizeof(T)));
-    count = array ? expected : 0;
-    return array ? CW_OK : cwi_fail_memory(err);
-}
-
 cw_status fail_model(cw_error *err, std::string words)
 {
     std::replace(words.begin(), words.end(), '\n', ' ');
     return cwi_fail(err, CW_ERR_FORMAT, "the glTF is not valid: %.400s", words.c_str());
-}
-
-// Returns a member of a value, which may not be an object.
-const tinygltf::Value &member(const tinygltf::Value &from, const char *key)
-{
-    static const tinygltf::Value none;
-    return from.IsObject() ? from.Get(key) : none;
 }
 
 cw_status copy_string(const std::string &from, char *&to, cw_error *err)
@@ -58,19 +42,6 @@ cw_status copy_buffers(const tinygltf::Value &list, cwi_gltf_scene &scene, cw_er
             st = cwi_fail_memory(err);
     }
     return st;
-}
-
-// Returns a whole number from 0 on; anything else becomes a number that is too large.
-uint64_t number_of(const tinygltf::Value &value)
-{
-    const double number = value.IsNumber() ? value.GetNumberAsDouble() : -1;
-    return number >= 0 && number < 9e15 ? uint64_t(number) : UINT64_MAX / 2;
-}
-
-int id_of(const tinygltf::Value &value)
-{
-    const uint64_t id = number_of(value);
-    return id < INT32_MAX ? int(id) : -1;
 }
 
 int choice_of(const tinygltf::Value &value, const std::vector<std::string> &names)
@@ -111,12 +82,14 @@ cw_status copy_views(const tinygltf::Model &model, cwi_gltf_scene &scene, cw_err
     return st;
 }
 
-// Returns the count of numbers in an element; matrices are not used.
-int numbers_of(int type)
+// Returns the count of numbers in an element; of matrices those of skins are used.
+int numbers_of(const tinygltf::Accessor &from)
 {
-    if (type == TINYGLTF_TYPE_SCALAR)
+    if (from.type == TINYGLTF_TYPE_SCALAR)
         return 1;
-    return type >= TINYGLTF_TYPE_VEC2 && type <= TINYGLTF_TYPE_VEC4 ? type : 0;
+    if (from.type == TINYGLTF_TYPE_MAT4 && from.componentType == TINYGLTF_COMPONENT_TYPE_FLOAT)
+        return 16;
+    return from.type >= TINYGLTF_TYPE_VEC2 && from.type <= TINYGLTF_TYPE_VEC4 ? from.type : 0;
 }
 
 cwi_gltf_sparse copy_sparse(const tinygltf::Accessor &from)
@@ -144,7 +117,7 @@ cw_status copy_accessors(const tinygltf::Model &model, cwi_gltf_scene &scene, cw
               from.byteOffset,
               from.count,
               from.componentType,
-              numbers_of(from.type),
+              numbers_of(from),
               from.normalized,
               copy_sparse(from),
               from.minValues.size() == 3 && from.maxValues.size() == 3,
@@ -158,20 +131,14 @@ cw_status copy_accessors(const tinygltf::Model &model, cwi_gltf_scene &scene, cw
     return st;
 }
 
-int find_attribute(const tinygltf::Primitive &primitive, const char *name)
-{
-    const auto found = primitive.attributes.find(name);
-    return found == primitive.attributes.end() ? -1 : found->second;
-}
-
 void copy_primitive(const tinygltf::Primitive &from, cwi_gltf_primitive &to)
 {
     to.mode = from.mode < 0 ? TINYGLTF_MODE_TRIANGLES : from.mode;
     to.indices =
         from.extras.IsNumber() ? id_of(from.extras) : -1; // renamed by cwi_gltf_blind()
-    to.position = find_attribute(from, "POSITION");
-    to.normal = find_attribute(from, "NORMAL");
-    to.color = find_attribute(from, "COLOR_0");
+    to.position = find_attribute(from.attributes, "POSITION");
+    to.normal = find_attribute(from.attributes, "NORMAL");
+    to.color = find_attribute(from.attributes, "COLOR_0");
     to.material = from.material;
     to.has_texcoords = from.attributes.count("TEXCOORD_0") > 0;
     to.draco = -1;
@@ -190,8 +157,9 @@ cw_status copy_meshes(const tinygltf::Model &model, cwi_gltf_scene &scene, cw_er
     size_t count = 0;
     cw_status st = allocate(scene.meshes, scene.mesh_count, model.meshes.size(), err);
     for (size_t i = 0; i < scene.mesh_count; i++) {
-        scene.meshes[i] = {count, count + model.meshes[i].primitives.size(), nullptr};
-        count = scene.meshes[i].end;
+        scene.meshes[i].first = count;
+        count += model.meshes[i].primitives.size();
+        scene.meshes[i].end = count;
     }
     for (size_t i = 0; i < scene.mesh_count && st == CW_OK; i++)
         st = copy_string(model.meshes[i].name, scene.meshes[i].name, err);
@@ -295,26 +263,16 @@ size_t count_levels(const tinygltf::Node &node)
     return ids.IsArray() ? ids.ArrayLen() : 0;
 }
 
-// Computes translation times rotation times scale. The quaternion need not have unit length.
+// Sets the map of a node. One that is left out is the identity.
 void set_matrix(const tinygltf::Node &from, double to[3][4])
 {
-    const std::vector<double> &m = from.matrix, &t = from.translation, &s = from.scale;
-    const std::vector<double> q =
-        from.rotation.empty() ? std::vector<double>{0, 0, 0, 1} : from.rotation;
-    const double f = 2 / (q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
-    const double rotation[3][3] = {
-        {1 - f * (q[1] * q[1] + q[2] * q[2]), f * (q[0] * q[1] - q[2] * q[3]),
-         f * (q[0] * q[2] + q[1] * q[3])},
-        {f * (q[0] * q[1] + q[2] * q[3]), 1 - f * (q[0] * q[0] + q[2] * q[2]),
-         f * (q[1] * q[2] - q[0] * q[3])},
-        {f * (q[0] * q[2] - q[1] * q[3]), f * (q[1] * q[2] + q[0] * q[3]),
-         1 - f * (q[0] * q[0] + q[1] * q[1])}};
-    for (size_t r = 0; r < 3; r++)
-        for (size_t c = 0; c < 4; c++)
-            to[r][c] = !m.empty()  ? m[4 * c + r]
-                       : c < 3     ? rotation[r][c] * (s.empty() ? 1 : s[c])
-                       : t.empty() ? 0
-                                   : t[r];
+    static const double origin[3] = {0, 0, 0}, unturned[4] = {0, 0, 0, 1}, unit[3] = {1, 1, 1};
+    const std::vector<double> &m = from.matrix, &t = from.translation, &q = from.rotation,
+                              &s = from.scale;
+    cwi_gltf_compose(t.empty() ? origin : t.data(), q.empty() ? unturned : q.data(),
+                     s.empty() ? unit : s.data(), to[0]);
+    for (size_t i = 0; i < 12 && !m.empty(); i++)
+        to[i / 4][i % 4] = m[4 * (i % 4) + i / 4];
 }
 
 bool has_length(const std::vector<double> &numbers, size_t length)
@@ -387,13 +345,13 @@ cw_status copy_roots(const tinygltf::Model &model, cwi_gltf_scene &scene, cw_err
     return st;
 }
 
-// Checks required extensions. Those that change only the look of a scene are accepted.
+// Checks required extensions. Those that are read, or change only the look of a scene, are accepted.
 cw_status check_extensions(const tinygltf::Model &model, cw_error *err)
 {
     const std::vector<std::string> harmless = {
         "KHR_mesh_quantization", GLTF_MESHOPT,         GLTF_DRACO,
         "KHR_texture_transform", "KHR_texture_basisu", "KHR_lights_punctual",
-        "EXT_texture_webp"};
+        "EXT_texture_webp",      GLTF_INSTANCING,      GLTF_VISIBILITY};
     for (const std::string &name : model.extensionsRequired)
         if (name.compare(0, 14, "KHR_materials_") != 0 &&
             std::find(harmless.begin(), harmless.end(), name) == harmless.end())
@@ -502,6 +460,14 @@ bool ignore_image(tinygltf::Image *, int, std::string *, std::string *, int, int
     return true;
 }
 
+// Removes complaints about skins without inverseBindMatrices, which glTF allows.
+void forgive_skins(std::string &words)
+{
+    const std::string complaint = "'inverseBindMatrices' property is missing in Skin.\n";
+    for (size_t at = words.find(complaint); at != std::string::npos; at = words.find(complaint))
+        words.erase(at, complaint.size());
+}
+
 cw_status parse_scene(const char *json, size_t size, cwi_gltf_scene *scene,
                       cw_error *err) noexcept
 {
@@ -514,6 +480,7 @@ cw_status parse_scene(const char *json, size_t size, cwi_gltf_scene *scene,
         model.asset.version.clear(); // no default
         const bool done =
             loader.LoadASCIIFromString(&model, &words, &warning, json, unsigned(size), "", 0);
+        forgive_skins(words);
         if (!done || !words.empty()) // it may omit broken parts and go on
             return fail_model(err, words);
         if (model.asset.version.compare(0, 2, "2.") != 0)
@@ -534,6 +501,8 @@ cw_status parse_scene(const char *json, size_t size, cwi_gltf_scene *scene,
             st = copy_meshes(model, *scene, err);
         if (st == CW_OK)
             st = copy_materials(model, *scene, err);
+        if (st == CW_OK)
+            st = cwi_gltf_copy_poses(model, *scene, err);
         if (st == CW_OK)
             st = check_usages(model, *scene, err);
         return st;

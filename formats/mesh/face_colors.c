@@ -10,11 +10,18 @@ static const uint8_t white[4] = {255, 255, 255, 255};
 
 cw_status cwi_color_faces(cwi_face_colors *f, size_t end, const uint8_t color[4], cw_error *err)
 {
-    if ((!color && !f->colors) || end <= f->count)
+    if (end <= f->count)
         return CW_OK;
+    if (!color && !f->colors) {
+        f->count = end;
+        return CW_OK;
+    }
+    const bool is_first = !f->colors;
     cw_status st = cwi_mesh_grow(f->in, &f->colors, &f->capacity, end, 4, err);
     if (st != CW_OK)
         return st;
+    if (is_first)
+        memset(f->colors, 255, 4 * f->count);
     for (; f->count < end; f->count++)
         memcpy(f->colors + 4 * f->count, color ? color : white, 4);
     return CW_OK;

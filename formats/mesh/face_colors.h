@@ -7,7 +7,7 @@
 /* Colours of the triangles read so far, sRGB and opacity. Zero it, except for `in`. */
 typedef struct cwi_face_colors {
     cwi_mesh_input *in; /* borrowed */
-    uint8_t *colors;    /* count x 4; NULL: none has a colour */
+    uint8_t *colors;    /* count x 4; NULL: none of these has a colour */
     size_t count, capacity;
 } cwi_face_colors;
 

@@ -6,6 +6,7 @@
 #include "core/mesh/weld.h"
 #include "formats/bytes/little_endian.h"
 #include "formats/mesh/mesh_axes.h"
+#include "formats/stl/stl_colors.h"
 #include "formats/stl/stl_format.h"
 
 #include <float.h>
@@ -13,7 +14,7 @@
 #include <string.h>
 #include <strings.h>
 
-enum { HEADER = 80, START = 84, FACET = 50, BATCH = 64 };
+enum { HEADER = CWI_STL_HEADER, START = 84, FACET = 50, BATCH = 64 };
 
 /* Returns true if the size is that of a binary file, since binary files may also begin with
  * "solid". Some are longer than their facets; they are accepted later, if they cannot be
@@ -44,6 +45,7 @@ typedef struct facets {
     cwi_welder welder;
     uint32_t *triangles;
     size_t count, capacity;
+    cwi_stl_colors colors; /* of a binary file */
 } facets;
 
 /* Counts the welder's memory when it has grown: its points and its table. */
@@ -184,7 +186,8 @@ static cw_status find_layout(const facets *f, uint64_t bytes, layout *l, cw_mesh
     return CW_OK;
 }
 
-static cw_status read_binary_facets(facets *f, cwi_scan *s, size_t count, bool has_attributes,
+/* Reads the next `count` facets. */
+static cw_status read_binary_facets(facets *f, cwi_scan *s, size_t count, const layout *l,
                                     cw_error *err)
 {
     float corners[9 * BATCH];
@@ -196,9 +199,11 @@ static cw_status read_binary_facets(facets *f, cwi_scan *s, size_t count, bool h
             const uint32_t bits = cwi_get_u32(b + 12 + 4 * i);
             memcpy(&corners[9 * t + i], &bits, sizeof bits);
         }
-        const size_t more = st == CW_OK && has_attributes ? b[48] | (size_t)b[49] << 8 : 0;
-        if (more)
-            st = cwi_scan_take(s, more, "its attributes", &b, err);
+        const uint16_t word = st == CW_OK ? (uint16_t)(b[48] | b[49] << 8) : 0;
+        if (st == CW_OK && !l->has_attributes)
+            st = cwi_stl_keep_word(&f->colors, f->count + t, l->count, word, err);
+        else if (word)
+            st = cwi_scan_take(s, word, "its attributes", &b, err);
     }
     return st == CW_OK ? add_facets(f, corners, count, err) : st;
 }
@@ -214,12 +219,13 @@ static cw_status read_binary(facets *f, cwi_scan *s, cw_mesh *mesh, cw_mesh_file
     layout l = {.count = cwi_get_u32(head + HEADER)};
     memcpy(text, head, HEADER);
     take_words(text, mesh, metadata);
+    cwi_stl_find_object_color(&f->colors, head);
     st = find_layout(f, cwi_scan_left(s), &l, metadata, err);
     if (st == CW_OK)
         st = ensure_capacity(f, l.count, err);
     while (st == CW_OK && f->count < l.count) {
         const size_t left = l.count - f->count;
-        st = read_binary_facets(f, s, left < BATCH ? left : BATCH, l.has_attributes, err);
+        st = read_binary_facets(f, s, left < BATCH ? left : BATCH, &l, err);
     }
     return st;
 }
@@ -369,7 +375,7 @@ cw_status cwi_stl_read(cwi_mesh_input *in, cw_mesh *mesh, cw_mesh_file *metadata
 {
     unsigned char head[START];
     size_t size;
-    facets f = {.in = in};
+    facets f = {.in = in, .colors = {.in = in}};
     cwi_scan s = {0};
     cw_status st = cwi_input_read_at(in->file.fd, 0, head, sizeof head, &size, err);
     const bool text = is_text(head, size) && !is_binary(head, size, in->file.size);
@@ -384,6 +390,9 @@ cw_status cwi_stl_read(cwi_mesh_input *in, cw_mesh *mesh, cw_mesh_file *metadata
         st = judge_end(&f, &s, st, metadata, err);
     if (st == CW_OK)
         st = move_arrays(&f, mesh, err);
+    if (st == CW_OK && !text)
+        st = cwi_stl_color_mesh(&f.colors, mesh, metadata, err);
+    cwi_stl_colors_free(&f.colors);
     cwi_scan_close(&s);
     cwi_welder_free(&f.welder);
     cwi_free(f.triangles);

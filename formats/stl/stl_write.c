@@ -1,7 +1,8 @@
-/* Writes STL. Binary: an 80-byte header, a count, then 50 bytes per triangle. Text: one
- * solid. */
+/* Writes STL. Binary: an 80-byte header, a count, then 50 bytes per triangle, the
+ * last two of which are its colour or 0. Text: one solid. */
 
 #include "core/base/status.h"
+#include "formats/stl/stl_colors.h"
 #include "formats/stl/stl_format.h"
 
 #include <math.h>
@@ -40,7 +41,8 @@ static unsigned char *encode_facet(const cwi_part *part, size_t i, unsigned char
     to = cwi_put_f32x3(to, normal);
     for (int c = 0; c < 3; c++)
         to = cwi_put_f32x3(to, corner[c]);
-    return cwi_put_u16(to, 0);
+    return cwi_put_u16(to,
+                       part->face_colors ? cwi_stl_pack_color(part->face_colors + 4 * i) : 0);
 }
 
 static unsigned char *encode_text_facet(const cwi_part *part, size_t i, unsigned char *to)

@@ -359,8 +359,8 @@ typedef struct cw_mesh_file {
     unsigned known;     /* cw_known flags; unknown properties were taken as LPS millimetres */
     cw_axes axes;       /* the file's own axes; zeroed for glTF and where not known */
     bool local;         /* coordinates were relative to an origin that the file names */
-    size_t parts;       /* number of merged parts: objects of OBJ, items of 3MF, primitives of
-                           glTF; else 1 */
+    size_t parts;       /* number of merged parts: objects of OBJ, items of 3MF, placed meshes
+                           of glTF; else 1 */
     size_t polygons;    /* faces of more than three corners, cut into triangles */
     size_t skipped;     /* points, lines and faces of fewer than three corners: left out */
     size_t levels;      /* maximum number of coarser levels of detail of a mesh (MSFT_lod of
@@ -384,19 +384,25 @@ typedef struct cw_mesh_file {
     bool miscounted;
     uint64_t attribute_bytes; /* behind the facets of an STL, as they state: left out */
 
-    /* Of glTF: features that viewers apply and this reader does not, such as "skins"; "": none. */
+    /* Of glTF: features that viewers apply and this reader does not, such as "colours of morph
+     * targets"; "": none. */
     char not_applied[160];
 
     /* Of 3MF: triangles of modifiers, blockers of supports and negative volumes, as slicers call
      * them: left out. */
     size_t modifier_triangles;
+
+    size_t invisible;          /* meshes of glTF that KHR_node_visibility hides: left out */
+    char invisible_names[160]; /* of those nodes; "..." where there is no room for all */
 } cw_mesh_file;
 
 /* Reads a mesh: all parts of the file, merged, in LPS millimetres.
  *
  * Vertices keep their numbers, also those that no triangle names. Positions keep their bits
  * where the file has single precision. STL shares nothing: its corners at equal coordinates
- * become one vertex, and its facet normals are ignored. Triangles without area are kept. A
+ * become one vertex, and its facet normals are ignored. The words behind its facets are colours of faces, if
+ * they are those of VisCAM and SolidView (bit 15 is set, or all are 0), or the header has a colour of
+ * Materialise Magics. Triangles without area are kept. A
  * polygon becomes a fan around its first corner where that is right, as when it is convex; else it
  * is cut into triangles by its ears, as seen along the axis along which it is largest.
  * Normals are kept when every vertex has one that is finite, and OBJ does not name two for it.
@@ -407,16 +413,18 @@ typedef struct cw_mesh_file {
  * than single precision, it is the middle of the mesh's box.
  *
  * glTF is in metres, +Y up: its scene is turned to LPS millimetres, (x, y, z) to (1000 x, -1000
- * z, 1000 y). Every placement of a mesh by a node is read. A mirrored mesh has its winding
- * reversed, so that triangles stay counter-clockwise from outside. Skins, morph
- * targets and animations are ignored, and images are never read. A node with a scale of 0 along
- * all axes is hidden, and left out.
+ * z, 1000 y). Every placement of a mesh by a node is read, and every instance of
+ * EXT_mesh_gpu_instancing. Morph targets are applied by the weights of the node, else of the mesh, and
+ * skins at rest: their joints place the vertices, not the node. A mirrored mesh has its winding
+ * reversed, so that triangles stay counter-clockwise from outside. Animations are
+ * ignored, and images are never read. A node with a scale of 0 along all axes is hidden, as are one that
+ * KHR_node_visibility hides and its children, and left out.
  *
  * From 3MF all objects of the build are placed, with components, in the unit that the file
  * names. A mirrored object also has its winding reversed.
  *
  * Colours of materials (glTF, 3MF, .mtl beside OBJ) become those of vertices where no vertex gets
- * two; else, and where PLY, OFF or VTP colour faces, they are the attribute CW_FACE_COLORS. In glTF
+ * two; else, and where PLY, OFF, VTP or STL colour faces, they are the attribute CW_FACE_COLORS. In glTF
  * they are multiplied with COLOR_0; a base colour of white, or of 0.8 of it, counts as none. Labels that
  * our glTF states are those of vertices, if each part has one.
  *
@@ -577,6 +585,11 @@ CW_NODISCARD CW_API cw_status cw_mesh_write(const char *path, const cw_mesh *mes
  * node are the label's value, colour and codes. In the other formats its value and colour are
  * those of the vertices, if all parts have them.
  *
+ * glTF has colours of vertices and of materials. Up to 128 colours of faces are a primitive and a
+ * material each, with common vertices, and triangles are in the order of their colours. With more, and
+ * compressed by Draco or meshopt, they are those of vertices, and a vertex of several colours is
+ * written once for each (cw_write_loss.split_vertices). They win over colours of vertices.
+ *
  * The format "neuroglancer" writes a folder of multi-resolution meshes with a segment for each
  * part, whose levels are its levels of detail. The label of a part is the segment's number;
  * without labels segments count from 1. Names and, of closed parts, volumes are segment
@@ -629,6 +642,8 @@ typedef struct cw_write_loss {
     unsigned dropped;       /* attributes that the meshes have and the file will not: cw_keeps
                                flags */
     char attributes[256];   /* names of those of cw_mesh.attributes, such as "uv, thickness" */
+    size_t split_vertices;  /* vertices that glTF has more, because each has one colour there */
+    size_t rounded_colors;  /* faces whose colours STL rounds to 5 bits a channel */
 } cw_write_loss;
 
 /* Measures the loss for a reader with single precision of a file by cw_mesh_write() or

@@ -24,7 +24,7 @@ from ._memory import memory_limit, memory_used
 from ._mesh import Mesh
 from ._place import split, transform
 from ._progress import Progress
-from ._read import read_mesh, read_volume
+from ._read import Part, read_mesh, read_parts, read_volume
 from ._remesh import Remeshed, remesh
 from ._render import render, write_png
 from ._repair import Repaired, repair
@@ -45,6 +45,7 @@ __all__ = [
     "Label",
     "LabelSurfaces",
     "Mesh",
+    "Part",
     "Patch",
     "Progress",
     "Remeshed",
@@ -71,6 +72,7 @@ __all__ = [
     "memory_used",
     "offset",
     "read_mesh",
+    "read_parts",
     "read_volume",
     "remesh",
     "render",

@@ -38,7 +38,8 @@ class Attributes(MutableMapping[str, npt.NDArray[Any]]):
 
     def __init__(self, struct: c.cw_mesh, owner: object) -> None:
         self._struct = struct
-        self._owner = owner if isinstance(owner, Owner) else Owner(struct, free_attributes)
+        # Arrays of a dict are the caller's; other owners free the attributes with the mesh.
+        self._owner = Owner(struct, free_attributes) if isinstance(owner, dict) else owner
         self._removed: list[object] = []  # memory that arrays may still use
 
     def _row(self, name: object) -> c.cw_attribute:

@@ -1896,6 +1896,8 @@ class cw_mesh_file(Structure):
     attribute_bytes: int
     not_applied: Any
     modifier_triangles: int
+    invisible: int
+    invisible_names: Any
 
 
 cw_mesh_file._fields_ = [
@@ -1921,6 +1923,8 @@ cw_mesh_file._fields_ = [
     ("attribute_bytes", c_uint64),
     ("not_applied", c_char * 160),
     ("modifier_triangles", c_size_t),
+    ("invisible", c_size_t),
+    ("invisible_names", c_char * 160),
 ]
 
 
@@ -2045,6 +2049,8 @@ class cw_write_loss(Structure):
     flat_triangles: int
     dropped: int
     attributes: Any
+    split_vertices: int
+    rounded_colors: int
 
 
 cw_write_loss._fields_ = [
@@ -2053,6 +2059,8 @@ cw_write_loss._fields_ = [
     ("flat_triangles", c_size_t),
     ("dropped", c_uint),
     ("attributes", c_char * 256),
+    ("split_vertices", c_size_t),
+    ("rounded_colors", c_size_t),
 ]
 
 

@@ -74,7 +74,7 @@ def memory_limit(bytes: int) -> None:
 
 
 def unpack(struct: ctypes.Structure) -> dict[str, Any]:
-    """Returns the fields of a struct of numbers as a dict that JSON can hold."""
+    """Returns the fields of a struct of numbers and texts as a dict that JSON can hold."""
     values: dict[str, Any] = {}
     for field in struct._fields_:
         value = getattr(struct, field[0])
@@ -82,5 +82,7 @@ def unpack(struct: ctypes.Structure) -> dict[str, Any]:
             value = unpack(value)
         elif isinstance(value, ctypes.Array):
             value = list(value)
+        elif isinstance(value, bytes):
+            value = value.decode("utf-8", "replace")
         values[field[0]] = value
     return values

@@ -40,7 +40,9 @@ class Mesh:
     The functions of this package make meshes; from_arrays() makes one of your own arrays.
 
     facts  of extract() and extract_levels(): a dict with the names of the stages that "ran", and
-           the other fields of cw_pipeline_facts, such as "voids"; {} for other meshes
+           the other fields of cw_pipeline_facts, such as "voids"; of read_mesh() and read_parts():
+           the fields of cw_mesh_file, such as "left_out", "not_applied" and "invisible_names", which
+           name the features of the file that the mesh lacks; {} for other meshes
     """
 
     facts: dict[str, Any]
@@ -72,6 +74,7 @@ class Mesh:
         scalars: npt.ArrayLike | None = None,
         colors: npt.ArrayLike | None = None,
         labels: npt.ArrayLike | None = None,
+        face_colors: npt.ArrayLike | None = None,
         origin: npt.ArrayLike = (0.0, 0.0, 0.0),
     ) -> Mesh:
         """Makes a mesh over arrays.
@@ -85,6 +88,7 @@ class Mesh:
         scalars    (n,) float32
         colors     (n, 4) uint8, sRGB and opacity
         labels     (n,) uint32
+        face_colors  (m, 4) uint8, sRGB and opacity of triangles; copied
         Raises ValueError for a shape or an index out of range, Error (ARGUMENT) for a position
         that is not finite.
         """
@@ -99,7 +103,9 @@ class Mesh:
                 raise ValueError(f"{name} has {len(array)} rows for {struct.vertex_count} vertices")
             setattr(struct, field, array.ctypes.data_as(POINTER(kind)))
         call(lib.cw_mesh_check, byref(struct))
-        return cls._from_c(struct, arrays)
+        mesh = cls._from_c(struct, arrays)
+        mesh._color_faces(face_colors)
+        return mesh
 
     def _array(self, name: str) -> npt.NDArray[Any] | None:
         if isinstance(self._owner, dict):  # of from_arrays()
@@ -142,6 +148,27 @@ class Mesh:
     def labels(self) -> npt.NDArray[np.uint32] | None:
         """(n,) labels of vertices, or None."""
         return self._array("labels")
+
+    @property
+    def face_colors(self) -> npt.NDArray[np.uint8] | None:
+        """(m, 4) sRGB and opacity of triangles, or None.
+
+        Setting them copies an array; None removes them. They are mesh.attributes["face_colors"].
+        """
+        return self.attributes.get("face_colors")
+
+    @face_colors.setter
+    def face_colors(self, values: npt.ArrayLike | None) -> None:
+        self._color_faces(values)
+
+    def _color_faces(self, values: npt.ArrayLike | None) -> None:
+        array = None if values is None else take_array("face_colors", values)
+        if array is not None and len(array) != self._struct.triangle_count:
+            raise ValueError(f"face_colors has {len(array)} rows for {self._struct.triangle_count} triangles")
+        if "face_colors" in self.attributes:
+            del self.attributes["face_colors"]
+        if array is not None:
+            self.attributes.add("face_colors", array, on="triangles", interpolation="color")
 
     @property
     def attributes(self) -> Attributes:
@@ -195,14 +222,15 @@ class Mesh:
             faces=self.triangles.astype(np.int64),
             vertex_normals=self.normals,
             vertex_colors=self.colors,
+            face_colors=self.face_colors if self.colors is None else None,
             process=False,
         )
 
     def to_pyvista(self) -> Any:
         """Returns a pyvista.PolyData in world coordinates (float64).
 
-        Normals, scalars, colors and labels become point data of these names. Raises ImportError
-        without the package pyvista.
+        Normals, scalars, colors and labels become point data of these names, and face_colors cell
+        data. Raises ImportError without the package pyvista.
         """
         try:
             import pyvista  # type: ignore
@@ -216,10 +244,13 @@ class Mesh:
             values = self._array(name)
             if values is not None:
                 surface.point_data["Normals" if name == "normals" else name] = values
+        if self.face_colors is not None:
+            surface.cell_data["face_colors"] = self.face_colors
         return surface
 
     def __repr__(self) -> str:
         has = [name for name in ("normals", "scalars", "colors", "labels") if self._array(name) is not None]
+        has += ["face_colors"] if self.face_colors is not None else []
         with_text = f", {', '.join(has)}" if has else ""
         counts = f"{self._struct.vertex_count} vertices, {self._struct.triangle_count} triangles"
         return f"<cubewright.Mesh {counts}{with_text}>"
@@ -227,7 +258,7 @@ class Mesh:
 
 def take_array(name: str, value: npt.ArrayLike) -> npt.NDArray[Any]:
     """Returns a contiguous array of the right type and shape; the same one if it is so already."""
-    _, kind, width, _ = ARRAYS[name]
+    _, kind, width, _ = ARRAYS["colors" if name == "face_colors" else name]
     array = np.asarray(value)
     shape = f"(n, {width})" if width > 1 else "(n,)"
     if array.shape == (0,):  # an empty list has neither columns nor a type of its own

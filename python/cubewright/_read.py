@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Sequence
-from ctypes import byref, c_char_p, pointer, string_at
+from ctypes import POINTER, byref, c_char_p, c_size_t, pointer, string_at
+from dataclasses import dataclass
 from typing import Any, Union
 
 from . import _declarations as c
 from ._errors import call, name_keywords
 from ._library import lib
-from ._memory import Owner
+from ._memory import Owner, unpack
 from ._mesh import Mesh
 from ._options import (
     take_choice,
@@ -58,14 +59,16 @@ def make_box(crop: Any) -> c.cw_box:
     return box
 
 
+def take_label(row: c.cw_label) -> Label:
+    """Copies a label."""
+    name = string_at(row.name).decode("utf-8", "replace") if row.name else None
+    red, green, blue, opacity = row.color
+    return Label(row.value, row.layer, name, (red, green, blue, opacity) if row.has_color else None)
+
+
 def take_labels(table: c.cw_label_table) -> list[Label]:
     """Copies and frees a table of labels."""
-    labels = []
-    for row in table.labels[: table.count] if table.count else []:
-        name = string_at(row.name).decode("utf-8", "replace") if row.name else None
-        red, green, blue, opacity = row.color
-        color = (red, green, blue, opacity) if row.has_color else None
-        labels.append(Label(row.value, row.layer, name, color))
+    labels = [take_label(row) for row in (table.labels[: table.count] if table.count else [])]
     lib.cw_label_table_free(byref(table))
     return labels
 
@@ -166,6 +169,34 @@ def read_volume(
     return volume
 
 
+@dataclass(frozen=True)
+class Part:
+    """A mesh of a file with several, under its name. label has the colour that the file states for it.
+
+    Other colours are those of mesh.colors and mesh.face_colors.
+    """
+
+    name: str | None
+    mesh: Mesh
+    label: Label | None = None
+
+
+def make_mesh_desc(options: dict[str, Any], reporter: Reporter) -> c.cw_mesh_read_desc:
+    return c.cw_mesh_read_desc(
+        reader=take_text("mesh_reader", options["mesh_reader"]),
+        allow_external=take_flag("allow_external", options["allow_external"]),
+        truncated=take_flag("truncated", options["truncated"]),
+        max_triangles=take_count("max_triangles", options["max_triangles"]),
+        max_bytes=take_count("max_bytes", options["max_bytes"]),
+        no_sandbox=not take_flag("sandbox", options["sandbox"]),
+        timeout_s=take_number("timeout", options["timeout"]),
+        claim=make_claim(
+            options["input_unit"], options["input_frame"], options["input_up"], options["input_override"]
+        ),
+        progress=reporter.struct,
+    )
+
+
 def read_mesh(
     path: Path,
     *,
@@ -187,19 +218,55 @@ def read_mesh(
     mesh_reader  a name of formats(); default: by content
     truncated    take the whole facets of an STL file that breaks off; else it is refused
     Other options are those of read_volume(). Raises the same errors.
+
+    mesh.facts tells the findings of the reader, such as "left_out": "textures" and "not_applied".
     """
+    options = dict(locals())
     reporter = Reporter(progress)
-    desc = c.cw_mesh_read_desc(
-        reader=take_text("mesh_reader", mesh_reader),
-        allow_external=take_flag("allow_external", allow_external),
-        truncated=take_flag("truncated", truncated),
-        max_triangles=take_count("max_triangles", max_triangles),
-        max_bytes=take_count("max_bytes", max_bytes),
-        no_sandbox=not take_flag("sandbox", sandbox),
-        timeout_s=take_number("timeout", timeout),
-        claim=make_claim(input_unit, input_frame, input_up, input_override),
-        progress=reporter.struct,
-    )
+    desc, file = make_mesh_desc(options, reporter), c.cw_mesh_file()
     mesh = Mesh._from_c(c.cw_mesh())
-    reporter.call(lib.cw_mesh_read, take_path("path", path), byref(desc), byref(mesh._struct), None)
+    reporter.call(lib.cw_mesh_read, take_path("path", path), byref(desc), byref(mesh._struct), byref(file))
+    mesh.facts = unpack(file)
     return mesh
+
+
+def read_parts(
+    path: Path,
+    *,
+    mesh_reader: str | None = None,
+    input_unit: str | None = None,
+    input_frame: str | None = None,
+    input_up: str | None = None,
+    input_override: bool = False,
+    allow_external: bool = False,
+    truncated: bool = False,
+    sandbox: bool = True,
+    timeout: float = 60.0,
+    max_triangles: int = 0,
+    max_bytes: int = 0,
+    progress: Progress = None,
+) -> list[Part]:
+    """Reads the parts of a file: objects of OBJ, solids of STL, items of 3MF, nodes of glTF.
+
+    Other files have one part. Options and errors are those of read_mesh(); the facts of each mesh are
+    those of the whole file. write() takes the list.
+    """
+    options = dict(locals())
+    reporter = Reporter(progress)
+    desc, file = make_mesh_desc(options, reporter), c.cw_mesh_file()
+    rows, count = POINTER(c.cw_part)(), c_size_t()
+    reporter.call(
+        lib.cw_parts_read, take_path("path", path), byref(desc), byref(rows), byref(count), byref(file)
+    )
+    try:
+        return [take_part(row, unpack(file)) for row in rows[: count.value]]
+    finally:
+        lib.cw_parts_free(rows, count)
+
+
+def take_part(row: c.cw_part, facts: dict[str, Any]) -> Part:
+    """Copies a part of the library."""
+    mesh = Mesh._from_c(row.mesh[0], owner=row).copy()
+    mesh.facts = facts
+    name = string_at(row.name).decode("utf-8", "replace") if row.name else None
+    return Part(name, mesh, take_label(row.label[0]) if row.label else None)

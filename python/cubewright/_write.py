@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from ctypes import byref, pointer
+from collections.abc import Mapping, Sequence
+from ctypes import POINTER, byref, c_char, cast, create_string_buffer, pointer
 from dataclasses import dataclass
 from typing import Any, Union
 
@@ -12,7 +12,7 @@ from ._library import lib
 from ._mesh import Mesh, take_mesh
 from ._options import take_choice, take_count, take_flag, take_length, take_path, take_text
 from ._progress import Progress, Reporter
-from ._read import UNITS, Path
+from ._read import UNITS, Part, Path
 from ._volume import Volume
 
 COMPRESSIONS = ("none", "quantize", "draco", "meshopt")
@@ -56,7 +56,7 @@ def make_write_desc(options: dict[str, Any], reporter: Reporter) -> c.cw_write_d
 
 def write(
     path: Path,
-    what: Union[Mesh, Volume, Mapping[str, Mesh]],
+    what: Union[Mesh, Volume, Mapping[str, Mesh], Sequence[Part]],
     *,
     format: str | None = None,
     name: str | None = None,
@@ -74,8 +74,8 @@ def write(
 ) -> Written:
     """Writes a mesh, several named meshes, or a volume, in the format of the path's suffix.
 
-    what        a Mesh; a dict of names and meshes (parts of a file, kept by glTF, OBJ, 3MF); or
-                a Volume (.nrrd, .nii, .nii.gz, .mha)
+    what        a Mesh; a dict of names and meshes, or a list of Part, which has labels too (parts
+                of a file, kept by glTF, OBJ, 3MF); or a Volume (.nrrd, .nii, .nii.gz, .mha)
     format      a name of formats(), in place of the suffix
     no_clobber  fail if the path exists; default: replace it. A file appears only when complete
     local       coordinates relative to the mesh's origin; default: world coordinates. glTF and
@@ -85,7 +85,7 @@ def write(
                 of a vertex, mm (default 1/20,000 of the diagonal), bits a number in its place
     effort      effort of Draco, 1 to 10; 0: 7
 
-    No format holds mesh.attributes: they are left out.
+    No format holds mesh.attributes but face_colors: they are left out.
 
     Raises Error: ARGUMENT, OUTPUT, UNSUPPORTED, LIMIT, CHECK, NO_MEMORY, CANCELLED.
     """
@@ -100,16 +100,34 @@ def write(
     if compress != "none":
         desc.compressed = pointer(result)
     if isinstance(what, Mapping):
+        what = [Part(title, mesh) for title, mesh in what.items()]
+    if isinstance(what, Sequence) and not isinstance(what, (str, bytes)):
         parts = (c.cw_part * max(len(what), 1))()
-        for part, (title, mesh) in zip(parts, what.items()):
-            part.mesh = pointer(take_mesh(f"what[{title!r}]", mesh))
-            part.name = take_text("a part's name", title)
+        for part, given in zip(parts, what):
+            fill_part(part, given)
         reporter.call(lib.cw_parts_write, target, parts, len(what), byref(desc))
     elif isinstance(what, Mesh):
         reporter.call(lib.cw_mesh_write, target, byref(what._struct), byref(desc))
     else:
         raise TypeError(f"a Mesh, a dict of them or a Volume can be written, not a {type(what).__name__}")
     return summarize(result)
+
+
+def fill_part(part: c.cw_part, given: Part) -> None:
+    if not isinstance(given, Part):
+        raise TypeError(f"a list of Part can be written, not of {type(given).__name__}")
+    part.mesh = pointer(take_mesh(f"the mesh of part {given.name!r}", given.mesh))
+    part.name = take_text("a part's name", given.name)
+    if given.label is None:
+        return
+    label = c.cw_label(value=given.label.value, layer=given.label.layer)
+    if given.label.name is not None:
+        name = create_string_buffer(take_text("a label's name", given.label.name) or b"")
+        label.name = cast(name, POINTER(c_char))
+    if given.label.color is not None:
+        label.has_color = True
+        label.color[:] = given.label.color
+    part.label = pointer(label)
 
 
 def summarize(r: c.cw_compressed) -> Written:

@@ -1,5 +1,7 @@
 """Tests reading and writing: what comes back, and what is refused."""
 
+import base64
+import json
 import pathlib
 
 import cubewright as cw
@@ -51,6 +53,91 @@ class Meshes(Case):
         self.assertIn("first", text)
         self.assertIn("second", text)
         self.assertEqual(len(cw.read_mesh(path).triangles), 2 * len(mesh.triangles))
+
+    def test_colours_of_faces(self):
+        mesh = cw.extract(make_ball(), 0)
+        self.assertIsNone(mesh.face_colors)
+        colors = np.full((len(mesh.triangles), 4), (255, 0, 0, 255), np.uint8)
+        colors[: len(colors) // 2] = (0, 0, 255, 255)
+        colors[-1] = (0, 255, 0, 255)
+        for make in (
+            lambda: cw.Mesh.from_arrays(mesh.vertices, mesh.triangles, face_colors=colors),
+            lambda: cw.Mesh.from_arrays(mesh.vertices, mesh.triangles, face_colors=colors.tolist()).copy(),
+        ):
+            self.assertTrue(np.array_equal(make().face_colors, colors))
+        mesh.face_colors = colors
+        self.assertIn("face_colors", repr(mesh))
+        for suffix in (".ply", ".stl", ".vtp", ".glb"):
+            with self.subTest(suffix):
+                path = self.folder / f"ball{suffix}"
+                try:
+                    cw.write(path, mesh)
+                except cw.Error as error:
+                    self.assertEqual(error.status, cw.Status.UNSUPPORTED)
+                    continue
+                again = cw.read_mesh(path).face_colors
+                self.assertEqual(sorted(map(tuple, again)), sorted(map(tuple, colors)))
+        solids = cw.split(mesh)
+        self.assertEqual(len(solids), 1)
+        self.assertEqual(sorted(map(tuple, solids[0].face_colors)), sorted(map(tuple, colors)))
+        mesh.face_colors = colors[:, ::-1]
+        self.assertEqual(tuple(mesh.face_colors[-1]), (255, 0, 255, 0))
+        mesh.face_colors = None
+        self.assertIsNone(mesh.face_colors)
+        for wrong in (colors[1:], colors[:, :3], colors.astype("i4") + 1):
+            with self.assertRaises(ValueError):
+                mesh.face_colors = wrong
+        with self.assertRaises(TypeError):
+            mesh.face_colors = colors / 255
+
+    def test_facts_of_files(self):
+        (self.folder / "a.mtl").write_text("newmtl wood\nmap_Kd wood.png\n")
+        text = "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl wood\nf 1 2 3\n"
+        (self.folder / "a.obj").write_text(text)
+        facts = cw.read_mesh(self.folder / "a.obj").facts
+        self.assertEqual((facts["format"], facts["left_out"], facts["not_applied"]), ("obj", "textures", ""))
+        self.assertEqual((facts["parts"], facts["truncated"]), (1, False))
+        (self.folder / "b.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nf 1 2 4 3\nl 1 2\n")
+        facts = cw.read_parts(self.folder / "b.obj")[0].mesh.facts
+        self.assertEqual((facts["polygons"], facts["skipped"], facts["left_out"]), (1, 1, ""))
+        self.need("gltf")
+        hidden = {"extensions": {"KHR_node_visibility": {"visible": False}}, "mesh": 0, "name": "wheel"}
+        buffer = base64.b64encode(np.float32([0, 0, 0, 1, 0, 0, 0, 1, 0]).tobytes()).decode()
+        scene = {
+            "asset": {"version": "2.0"},
+            "buffers": [{"byteLength": 36, "uri": "data:;base64," + buffer}],
+            "bufferViews": [{"buffer": 0, "byteLength": 36}],
+            "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"}],
+            "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+            "nodes": [{"mesh": 0}, hidden],
+        }
+        (self.folder / "a.gltf").write_text(json.dumps(scene))
+        facts = cw.read_mesh(self.folder / "a.gltf").facts
+        self.assertEqual((facts["invisible"], facts["invisible_names"], facts["parts"]), (1, "wheel", 1))
+        json.dumps(facts)
+
+    def test_parts_come_back_with_colours(self):
+        self.need("gltf")
+        mesh = cw.extract(make_ball(), 0)
+        other = mesh.copy()
+        other.face_colors = np.resize(np.uint8([[9, 8, 7, 255], [200, 0, 0, 255]]), (len(mesh.triangles), 4))
+        given = [cw.Part("liver", mesh, cw.Label(3, 0, "liver", (1, 128, 254, 255))), cw.Part("tube", other)]
+        path = self.folder / "parts.glb"
+        for _ in range(2):
+            cw.write(path, given)
+            given = cw.read_parts(path)
+            self.assertEqual([part.name for part in given], ["liver", "tube"])
+            self.assertEqual(given[0].label, cw.Label(3, 0, "liver", (1, 128, 254, 255)))
+            self.assertIsNone(given[1].label)
+            self.assertEqual(len(np.unique(given[1].mesh.face_colors, axis=0)), 2)
+            self.assertEqual(given[0].mesh.facts["parts"], 2)
+        self.same_mesh(given[0].mesh, cw.read_parts(path)[0].mesh)
+        with self.assertRaises(TypeError):
+            cw.write(path, [mesh])
+        with self.assertRaises(TypeError):
+            cw.write(path, "parts")
+        with self.fails(cw.Status.IO):
+            cw.read_parts(self.folder / "missing.obj")
 
     def test_mistakes(self):
         mesh = cw.extract(make_ball(), 0)

@@ -31,7 +31,7 @@ done
 cubewright convert faces.obj -o faces.ply --ascii
 grep -A 4 '^element face' faces.ply
 grep '^3 ' faces.ply >expected
-for format in off 3mf vtp obj; do
+for format in off 3mf vtp obj glb gltf; do
     cubewright convert faces.ply -o again.$format -q
     cubewright convert again.$format -o again.ply --ascii -q
     grep '^3 ' again.ply | cmp - expected && echo "$format keeps them"

@@ -71,7 +71,7 @@ static void primitives_are_merged(void **state)
     cw_mesh_file file;
     cw_error err = {0};
     assert_ok(read_primitive(BY_BYTES "," BY_BYTES, &mesh, &file, &err), err);
-    assert_int_equal(file.parts, 2);
+    assert_int_equal(file.parts, 1);
     assert_int_equal(mesh.vertex_count, 3);
     check_triangles(&mesh, 2, shared);
     cw_mesh_free(&mesh);
@@ -196,37 +196,6 @@ static void what_has_no_scale_is_hidden(void **state)
     assert_int_equal(file.hidden, 1);
     assert_int_equal(mesh.vertex_count, 0);
     cw_mesh_free(&mesh);
-}
-
-/* Features that viewers apply and this reader does not are named, if they change the picture. */
-static void what_viewers_draw_otherwise_is_named(void **state)
-{
-    (void)state;
-    static const struct {
-        const char *nodes, *named;
-    } cases[] = {
-        {"\"nodes\":[{\"mesh\":0,\"weights\":[0,0.0,0e5,-0]}]", ""},
-        {"\"nodes\":[{\"mesh\":0,\"weights\":[0,0.25]}]", "weights of morph targets"},
-        {"\"nodes\":[{\"mesh\":0,\"skin\":0}]", "skins"},
-        {"\"nodes\":[{\"mesh\":0,\"extensions\":{\"EXT_mesh_gpu_instancing\":{\"attributes\":{}}}}]",
-         "instances (EXT_mesh_gpu_instancing)"},
-        {"\"nodes\":[{\"mesh\":0,\"extensions\":{\"KHR_node_visibility\":{\"visible\":true}}}]",
-         ""},
-        {"\"nodes\":[{\"mesh\":0,\"skin\":1,\"extensions\":{\"KHR_node_visibility\":{\"visible\":"
-         "false}}}]",
-         "skins, nodes hidden by KHR_node_visibility"},
-    };
-    for (size_t n = 0; n < sizeof cases / sizeof *cases; n++) {
-        char text[400];
-        cw_mesh mesh;
-        cw_mesh_file file;
-        cw_error err = {0};
-        snprintf(text, sizeof text, "\"scenes\":[{\"nodes\":[0]}],%s", cases[n].nodes);
-        assert_ok(read_nodes(text, &mesh, &file, &err), err);
-        assert_string_equal(file.not_applied, cases[n].named);
-        assert_int_equal(mesh.triangle_count, 1);
-        cw_mesh_free(&mesh);
-    }
 }
 
 /* A quarter turn about +Y, and normals that follow; a mirror leaves them outward. */
@@ -415,7 +384,6 @@ int main(void)
         TEST(nodes_place_meshes_and_mirrors_turn_the_winding),
         TEST(levels_of_detail_are_counted_and_left_out),
         TEST(what_has_no_scale_is_hidden),
-        TEST(what_viewers_draw_otherwise_is_named),
         TEST(floats_are_light_and_bytes_are_rounded),
         TEST(normals_turn_with_their_node),
         TEST(far_nodes_get_an_origin),

@@ -64,9 +64,10 @@ static void faces_without_a_place_for_colours_are_told(void **state)
     cw_mesh mesh;
     cw_error err = {0};
     cw_write_loss loss;
+    const cw_write_desc text = {.text = true};
     test_make_cube(&mesh);
     add_face_colors(&mesh);
-    assert_ok(cw_mesh_write_loss("a.stl", &mesh, NULL, &loss, &err), err);
+    assert_ok(cw_mesh_write_loss("a.stl", &mesh, &text, &loss, &err), err);
     assert_int_equal(loss.dropped, CW_KEEPS_SHARING | CW_KEEPS_NORMALS | CW_KEEPS_FACE_COLORS);
     assert_string_equal(loss.attributes, "");
     cw_mesh_free(&mesh);
@@ -151,6 +152,30 @@ static void faces_of_obj_have_colours_of_materials(void **state)
     assert_null(mesh.colors);
     assert_string_equal(file.left_out, "textures");
     cw_mesh_free(&mesh);
+}
+
+/* Faces before the first colour are white, also where they are many. */
+static void faces_before_the_first_colour_have_none(void **state)
+{
+    (void)state;
+#define PLATE "OFF\n4 2 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n"
+    static const struct {
+        const char *name, *text;
+    } rows[] = {
+        {"a.obj", "mtllib m.mtl\n" SQUARE "f 1 2 3\nusemtl blue\nf 1 3 4\n"},
+        {"b.obj", "mtllib m.mtl\n" SQUARE "usemtl none\nf 1 2 3\nusemtl blue\nf 1 3 4\n"},
+        {"a.off", PLATE "3 0 1 2\n3 0 2 3 0 0 255\n"},
+    };
+    write_file("m.mtl", "newmtl blue\nKd 0 0 1\n");
+    for (size_t n = 0; n < sizeof rows / sizeof *rows; n++) {
+        static const uint8_t expected[8] = {255, 255, 255, 255, 0, 0, 255, 255};
+        cw_mesh mesh;
+        cw_error err = {0};
+        assert_ok(read_text(rows[n].name, rows[n].text, &mesh, NULL, &err), err);
+        assert_non_null(face_colors(&mesh));
+        assert_memory_equal(face_colors(&mesh), expected, 8);
+        cw_mesh_free(&mesh);
+    }
 }
 
 /* Shapes do not depend on materials. */
@@ -436,6 +461,7 @@ int main(void)
         cmocka_unit_test(faces_without_a_place_for_colours_are_told),
         cmocka_unit_test(vertices_of_obj_have_colours),
         cmocka_unit_test(faces_of_obj_have_colours_of_materials),
+        cmocka_unit_test(faces_before_the_first_colour_have_none),
         cmocka_unit_test(materials_that_are_missing_are_told),
         cmocka_unit_test(labels_come_back_through_gltf),
         cmocka_unit_test(parts_of_one_colour_keep_it),
