@@ -18,6 +18,8 @@ const cli_synonym cli_synonyms[] = {
     {"label|segment|mask|atlas", NULL, "--labels|--names|label|--inside",
      "'extract --labels all' makes a closed mesh of each label of a label map or a mask. An "
      "isovalue joins all labels above it."},
+    {"uv|unwrap|texture|texcoord|chart|lightmap", "uv", "uv|--atlas|--texel-density|--margin",
+     "'uv' gives a mesh texture coordinates, for GLB and OBJ."},
     {"denois|despeckl", NULL, "--denoise|smooth|--min-volume|--drop-components",
      "'extract --denoise' smooths the values of volumes, 'smooth' meshes. --min-volume and "
      "--drop-components remove small components."},

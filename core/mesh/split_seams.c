@@ -1,4 +1,6 @@
 /* Gives each vertex one texture coordinate. */
+#include "core/mesh/split_seams.h"
+
 #include "core/base/memory.h"
 #include "core/base/status.h"
 #include "core/mesh/corner_table.h"
@@ -16,15 +18,6 @@ typedef struct placed_corner {
     uint32_t corner;
 } placed_corner;
 
-typedef struct seam_split {
-    const cw_mesh *mesh;
-    const float (*uv)[2]; /* corners */
-    uint32_t *vertex;     /* corners: their new vertices, set */
-    uint32_t *source;     /* new vertices: the old one; set */
-    uint32_t *corner;     /* new vertices: one of their corners; CWI_NO_CORNER: none; set */
-    size_t vertices;
-} seam_split;
-
 static uint64_t bits_of(const float uv[2])
 {
     uint32_t bits[2];
@@ -41,8 +34,8 @@ static int compare_corners(const void *a, const void *b)
     return m->corner < n->corner ? -1 : m->corner > n->corner;
 }
 
-/* Numbers the places of a vertex; the one that comes first keeps its number. */
-static void number_places(seam_split *s, uint32_t v, placed_corner *corners, size_t count)
+/* Numbers the places of a vertex; the one that comes first has the vertex's number. */
+static void number_places(cwi_seams *s, uint32_t v, placed_corner *corners, size_t count)
 {
     bool differ = false;
     for (size_t n = 1; n < count && !differ; n++)
@@ -53,18 +46,17 @@ static void number_places(seam_split *s, uint32_t v, placed_corner *corners, siz
     s->corner[v] = count ? corners[0].corner : CWI_NO_CORNER;
     for (size_t n = 0; n < count; n++) {
         if (n > 0 && corners[n].uv != corners[n - 1].uv) {
-            at = (uint32_t)s->vertices++;
-            s->source[at] = v;
+            at = (uint32_t)s->count++;
+            s->vertex[at] = v;
             s->corner[at] = corners[n].corner;
         }
-        s->vertex[corners[n].corner] = at;
+        s->number[corners[n].corner] = at;
     }
 }
 
-/* Sets the new vertices of all corners. Returns false when memory is out. */
-static bool find_vertices(seam_split *s)
+/* Sets the numbers of all corners. Returns false when memory is out. */
+static bool number_corners(cwi_seams *s, const cw_mesh *m, const float (*uv)[2])
 {
-    const cw_mesh *m = s->mesh;
     const size_t corners = 3 * m->triangle_count;
     uint32_t *first = cwi_alloc_array(m->vertex_count + 2, sizeof *first);
     uint32_t *around = cwi_alloc_array(corners, sizeof *around);
@@ -73,14 +65,14 @@ static bool find_vertices(seam_split *s)
     if (ok)
         cwi_fans_sort(m->triangles, m->triangle_count, m->vertex_count, first, around);
     for (uint32_t v = 0; v < m->vertex_count; v++)
-        s->source[v] = v;
-    s->vertices = m->vertex_count;
+        s->vertex[v] = v;
+    s->count = m->vertex_count;
     for (uint32_t v = 0; ok && v < m->vertex_count; v++) {
         size_t count = 0;
         for (uint32_t n = first[v]; n < first[v + 1]; n++)
             for (uint32_t c = 3 * around[n]; c < 3 * around[n] + 3; c++)
                 if (m->triangles[c] == v && (count == 0 || placed[count - 1].corner < c))
-                    placed[count++] = (placed_corner){bits_of(s->uv[c]), c};
+                    placed[count++] = (placed_corner){bits_of(uv[c]), c};
         number_places(s, v, placed, count);
     }
     cwi_free(first);
@@ -89,30 +81,60 @@ static bool find_vertices(seam_split *s)
     return ok;
 }
 
-/* Makes the mesh of the new vertices, without texture coordinates. like: a mesh without them */
-static cw_status make_split(const seam_split *s, const cw_mesh *like, cw_mesh *out,
-                            cw_error *err)
+const cw_attribute *cwi_texture_of(const cw_mesh *mesh)
 {
-    const cw_mesh *m = s->mesh;
-    cw_status st = cwi_mesh_alloc(out, s->vertices, m->triangle_count, false, err);
+    const cw_attribute *uv = cw_mesh_attribute_find(mesh, CW_TEXTURE_COORDINATES);
+    return uv && (uv->on == CW_ON_CORNERS || uv->on == CW_ON_VERTICES) && uv->type == CW_F32 &&
+                   uv->components == 2
+               ? uv
+               : NULL;
+}
+
+cw_status cwi_seams_find(const cw_mesh *mesh, cwi_seams *seams, cw_error *err)
+{
+    const size_t corners = 3 * mesh->triangle_count, most = mesh->vertex_count + corners;
+    *seams = (cwi_seams){.number = cwi_alloc_array(corners, sizeof *seams->number),
+                         .vertex = cwi_alloc_array(most, sizeof *seams->vertex),
+                         .corner = cwi_alloc_array(most, sizeof *seams->corner)};
+    return seams->number && seams->vertex && seams->corner &&
+                   number_corners(seams, mesh, cwi_texture_of(mesh)->data)
+               ? CW_OK
+               : cwi_fail_memory(err);
+}
+
+void cwi_seams_free(cwi_seams *seams)
+{
+    cwi_free(seams->number);
+    cwi_free(seams->vertex);
+    cwi_free(seams->corner);
+    *seams = (cwi_seams){0};
+}
+
+/* --- copies with one coordinate a vertex ----------------------------------------------------- */
+
+/* Copies all but texture coordinates. like: the mesh without them */
+static cw_status copy_mesh(const cwi_seams *s, const cw_mesh *like, cw_mesh *copy, cw_error *err)
+{
+    cw_status st = cwi_mesh_alloc(copy, s->count, like->triangle_count, false, err);
     if (st == CW_OK)
-        st = cwi_attributes_alloc(like, out, err);
+        st = cwi_attributes_alloc(like, copy, err);
     if (st != CW_OK)
         return st;
-    memcpy(out->origin, m->origin, sizeof out->origin);
-    memcpy(out->affine, m->affine, sizeof out->affine);
-    memcpy(out->triangles, s->vertex, 3 * m->triangle_count * sizeof *out->triangles);
-    for (size_t v = 0; v < s->vertices; v++) {
-        memcpy(out->positions + 3 * v, m->positions + 3 * (size_t)s->source[v],
-               3 * sizeof *out->positions);
-        cwi_attributes_put(like, s->source[v], out, v);
+    memcpy(copy->origin, like->origin, sizeof copy->origin);
+    memcpy(copy->affine, like->affine, sizeof copy->affine);
+    memcpy(copy->triangles, s->number, 3 * like->triangle_count * sizeof *copy->triangles);
+    for (size_t v = 0; v < s->count; v++) {
+        memcpy(copy->positions + 3 * v, like->positions + 3 * (size_t)s->vertex[v],
+               3 * sizeof *copy->positions);
+        cwi_attributes_put(like, s->vertex[v], copy, v);
     }
-    for (size_t t = 0; t < m->triangle_count; t++)
-        cwi_attributes_put_triangle(like, t, m->triangles + 3 * t, out, t);
+    for (size_t t = 0; t < like->triangle_count; t++)
+        cwi_attributes_put_triangle(like, t, like->triangles + 3 * t, copy, t);
     return CW_OK;
 }
 
-static cw_status add_coordinates(const seam_split *s, cw_mesh *out, cw_error *err)
+static cw_status copy_coordinates(const cwi_seams *s, const float *uv, cw_mesh *copy,
+                                  cw_error *err)
 {
     const cw_attribute like = {.name = CW_TEXTURE_COORDINATES,
                                .on = CW_ON_VERTICES,
@@ -120,55 +142,50 @@ static cw_status add_coordinates(const seam_split *s, cw_mesh *out, cw_error *er
                                .components = 2,
                                .interpolation = CW_INTERPOLATE_LINEAR};
     cw_attribute *added;
-    cw_status st = cw_mesh_attribute_add(out, &like, &added, err);
-    for (size_t v = 0; st == CW_OK && v < s->vertices; v++)
+    cw_status st = cw_mesh_attribute_add(copy, &like, &added, err);
+    for (size_t v = 0; st == CW_OK && v < s->count; v++)
         if (s->corner[v] != CWI_NO_CORNER)
-            memcpy((float *)added->data + 2 * v, s->uv[s->corner[v]], sizeof *s->uv);
+            memcpy((float *)added->data + 2 * v, uv + 2 * (size_t)s->corner[v], 2 * sizeof *uv);
     return st;
 }
 
-static cw_status split(seam_split *s, const cw_mesh *like, cw_mesh *out, cw_error *err)
+cw_status cwi_split_seams(const cw_mesh *mesh, cw_mesh *copy, cw_error *err)
 {
-    const size_t corners = 3 * s->mesh->triangle_count, most = s->mesh->vertex_count + corners;
-    s->vertex = cwi_alloc_array(corners, sizeof *s->vertex);
-    s->source = cwi_alloc_array(most, sizeof *s->source);
-    s->corner = cwi_alloc_array(most, sizeof *s->corner);
-    cw_status st =
-        s->vertex && s->source && s->corner && find_vertices(s) ? CW_OK : cwi_fail_memory(err);
+    const cw_attribute *uv = cwi_texture_of(mesh);
+    cwi_seams seams;
+    cw_mesh like = *mesh; /* the same arrays, but for texture coordinates */
+    *copy = (cw_mesh){0};
+    cw_status st = cwi_seams_find(mesh, &seams, err);
+    like.attributes = cwi_alloc_array(mesh->attribute_count, sizeof *like.attributes);
+    like.attribute_count = 0;
+    for (size_t n = 0; like.attributes && n < mesh->attribute_count; n++)
+        if (&mesh->attributes[n] != uv)
+            like.attributes[like.attribute_count++] = mesh->attributes[n];
+    if (st == CW_OK && !like.attributes)
+        st = cwi_fail_memory(err);
     if (st == CW_OK)
-        st = make_split(s, like, out, err);
+        st = copy_mesh(&seams, &like, copy, err);
     if (st == CW_OK)
-        st = add_coordinates(s, out, err);
-    cwi_free(s->vertex);
-    cwi_free(s->source);
-    cwi_free(s->corner);
+        st = copy_coordinates(&seams, uv->data, copy, err);
+    cwi_free(like.attributes);
+    cwi_seams_free(&seams);
     return st;
 }
 
 cw_status cw_mesh_split_seams(cw_mesh *mesh, cw_error *err)
 {
+    cw_mesh copy = {0};
     CWI_REQUIRE(err, mesh);
     cw_status st = cwi_mesh_check_size(mesh, "split along its seams", err);
-    const cw_attribute *uv = cw_mesh_attribute_find(mesh, CW_TEXTURE_COORDINATES);
-    if (st != CW_OK || !uv || uv->on != CW_ON_CORNERS || uv->type != CW_F32 ||
-        uv->components != 2)
+    const cw_attribute *uv = st == CW_OK ? cwi_texture_of(mesh) : NULL;
+    if (!uv || uv->on != CW_ON_CORNERS)
         return st;
-    cw_mesh like = *mesh, out = {0}; /* like: the same arrays, but for texture coordinates */
-    like.attributes = cwi_alloc_array(mesh->attribute_count, sizeof *like.attributes);
-    if (!like.attributes)
-        return cwi_fail_memory(err);
-    like.attribute_count = 0;
-    for (size_t n = 0; n < mesh->attribute_count; n++)
-        if (&mesh->attributes[n] != uv)
-            like.attributes[like.attribute_count++] = mesh->attributes[n];
-    seam_split s = {.mesh = mesh, .uv = uv->data};
-    st = split(&s, &like, &out, err);
-    cwi_free(like.attributes);
-    if (st != CW_OK) {
-        cw_mesh_free(&out);
-        return st;
+    st = cwi_split_seams(mesh, &copy, err);
+    if (st == CW_OK) {
+        cw_mesh_free(mesh);
+        *mesh = copy;
+    } else {
+        cw_mesh_free(&copy);
     }
-    cw_mesh_free(mesh);
-    *mesh = out;
-    return CW_OK;
+    return st;
 }

@@ -98,6 +98,8 @@ void set_options(draco::Encoder &encoder, const cwi_draco_settings &s, bool on_g
                                               position_options(s.grid));
     encoder.SetAttributeQuantization(draco::GeometryAttribute::NORMAL, s.normal_bits);
     encoder.SetAttributeQuantization(draco::GeometryAttribute::COLOR, COLOR_BITS);
+    if (s.texture_bits)
+        encoder.SetAttributeQuantization(draco::GeometryAttribute::TEX_COORD, s.texture_bits);
 }
 
 cw_status encode(const cwi_arrays *from, const cwi_draco_settings *settings,
@@ -111,7 +113,7 @@ cw_status encode(const cwi_arrays *from, const cwi_draco_settings *settings,
         draco::Encoder encoder;
         draco::EncoderBuffer buffer;
         const size_t count = from->vertex_count;
-        *ids = {-1, -1, -1};
+        *ids = {-1, -1, -1, -1};
         mesh.set_num_points(uint32_t(count));
         add_faces(mesh, *from);
         // Neuroglancer takes no other integers than signed ones of 32 bits.
@@ -127,6 +129,9 @@ cw_status encode(const cwi_arrays *from, const cwi_draco_settings *settings,
         if (from->colors)
             ids->color = add_attribute(mesh, draco::GeometryAttribute::COLOR, draco::DT_UINT8,
                                        4, true, from->colors, count);
+        if (from->texture)
+            ids->texture = add_attribute(mesh, draco::GeometryAttribute::TEX_COORD,
+                                         draco::DT_FLOAT32, 2, false, from->texture, count);
         if (settings->comment) {
             auto metadata = std::make_unique<draco::GeometryMetadata>();
             metadata->AddEntryString(COMMENT, settings->comment);
@@ -173,15 +178,17 @@ cwi_draco_ids find_all(const draco::Mesh &mesh)
 {
     return {find_first(mesh, draco::GeometryAttribute::POSITION, 3),
             find_first(mesh, draco::GeometryAttribute::NORMAL, 3),
-            find_first(mesh, draco::GeometryAttribute::COLOR, 3)};
+            find_first(mesh, draco::GeometryAttribute::COLOR, 3),
+            find_first(mesh, draco::GeometryAttribute::TEX_COORD, 2)};
 }
 
-// Copies triples; returns false where a point has no value.
-template <typename T> bool copy_triples(const draco::PointAttribute &from, size_t count, T *to)
+// Copies some numbers of each point; returns false where one has no value.
+template <int numbers, typename T>
+bool copy_numbers(const draco::PointAttribute &from, size_t count, T *to)
 {
     for (size_t i = 0; i < count; i++) {
         const draco::AttributeValueIndex at = from.mapped_index(draco::PointIndex(uint32_t(i)));
-        if (at.value() >= from.size() || !from.ConvertValue<T, 3>(at, to + 3 * i))
+        if (at.value() >= from.size() || !from.ConvertValue<T, numbers>(at, to + numbers * i))
             return false;
     }
     return true;
@@ -237,9 +244,11 @@ cw_status copy_mesh(const draco::Mesh &mesh, const cwi_draco_ids &ids,
 {
     const draco::PointAttribute *positions = find(mesh, ids.position, 3),
                                 *normals = find(mesh, ids.normal, 3),
-                                *colors = find(mesh, ids.color, 3);
+                                *colors = find(mesh, ids.color, 3),
+                               *texture = find(mesh, ids.texture, 2);
     const size_t count = mesh.num_points();
     if (!positions || (ids.normal >= 0 && !normals) || (ids.color >= 0 && !colors) ||
+        (ids.texture >= 0 && !texture) ||
         (colors && colors->num_components() > 4))
         return cwi_fail(err, CW_ERR_FORMAT, "the Draco data lack an attribute that is named");
     if (grid && !is_on_grid(*positions, *grid))
@@ -253,13 +262,15 @@ cw_status copy_mesh(const draco::Mesh &mesh, const cwi_draco_ids &ids,
     if (!(grid ? allocate(to.grid_points, count, 3) : allocate(to.positions, count, 3)) ||
         !allocate(to.triangles, to.triangle_count, 3) ||
         (normals && !allocate(to.normals, count, 3)) ||
-        (colors && !allocate(to.colors, count, 4)))
+        (colors && !allocate(to.colors, count, 4)) ||
+        (texture && !allocate(to.texture, count, 2)))
         return cwi_fail_memory(err);
-    if (!(grid ? copy_triples(*positions, count, to.grid_points)
-               : copy_triples(*positions, count, to.positions)) ||
+    if (!(grid ? copy_numbers<3>(*positions, count, to.grid_points)
+               : copy_numbers<3>(*positions, count, to.positions)) ||
         !copy_faces(mesh, to.triangles) ||
-        (normals && !copy_triples(*normals, count, to.normals)) ||
-        (colors && !copy_colors(*colors, count, to.colors)))
+        (normals && !copy_numbers<3>(*normals, count, to.normals)) ||
+        (colors && !copy_colors(*colors, count, to.colors)) ||
+        (texture && !copy_numbers<2>(*texture, count, to.texture)))
         return cwi_fail(err, CW_ERR_FORMAT, "the Draco data name points that are not there");
     return CW_OK;
 }

@@ -106,6 +106,47 @@ static cw_status compare_arrays(const cw_mesh *mesh, const cwi_decoded *d, const
     return CW_OK;
 }
 
+/* Returns the length of the longer side of the box around texture coordinates. */
+static double measure_texture(const float *texture, size_t count)
+{
+    float low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
+    for (size_t i = 0; i < 2 * count; i++) {
+        low[i % 2] = fminf(low[i % 2], texture[i]);
+        high[i % 2] = fmaxf(high[i % 2], texture[i]);
+    }
+    return fmax((double)high[0] - (double)low[0], (double)high[1] - (double)low[1]);
+}
+
+/* Looks for the texture coordinate of each decoded vertex among those of the vertices at its position. */
+static cw_status compare_texture(const cw_mesh *mesh, const cwi_decoded *d, const uint32_t *map,
+                                 cw_error *err)
+{
+    const size_t count = mesh->vertex_count;
+    const double step = measure_texture(d->texture_encoded, count) / (1 << d->texture_bits);
+    uint32_t *first = cwi_alloc_array(count, sizeof *first);
+    uint32_t *next = cwi_alloc_array(count, sizeof *next); /* of the vertices at one position */
+    cw_status st = first && next ? CW_OK : cwi_fail_memory(err);
+    for (size_t v = 0; v < count && st == CW_OK; v++)
+        first[v] = UINT32_MAX;
+    for (uint32_t v = 0; v < count && st == CW_OK; v++) {
+        next[v] = first[map[v]];
+        first[map[v]] = v;
+    }
+    for (size_t v = 0; v < d->vertex_count && st == CW_OK; v++) {
+        bool found = false;
+        for (uint32_t w = first[map[count + v]]; w != UINT32_MAX && !found; w = next[w])
+            found = fabs((double)d->texture[2 * v] - (double)d->texture_encoded[2 * (size_t)w]) <= step &&
+                    fabs((double)d->texture[2 * v + 1] -
+                         (double)d->texture_encoded[2 * (size_t)w + 1]) <= step;
+        if (!found)
+            st = cwi_fail(err, CW_ERR_CHECK,
+                          "the texture coordinate of decoded vertex %zu is not the one encoded", v);
+    }
+    cwi_free(first);
+    cwi_free(next);
+    return st;
+}
+
 cw_status cwi_verify(const cw_mesh *mesh, const cwi_quantization_grid *grid,
                      const cwi_decoded *decoded, double *normal_degrees, cw_error *err)
 {
@@ -122,6 +163,8 @@ cw_status cwi_verify(const cw_mesh *mesh, const cwi_quantization_grid *grid,
     if (grid_points && map && shared && cwi_weld(grid_points, count, map)) {
         mark_shared(map, mesh->vertex_count, shared);
         st = compare_arrays(mesh, decoded, map, shared, normal_degrees, err);
+        if (st == CW_OK && decoded->texture && decoded->texture_encoded)
+            st = compare_texture(mesh, decoded, map, err);
     } else {
         st = cwi_fail_memory(err);
     }

@@ -53,6 +53,12 @@ void cwi_gltf_plan_arrays(const cwi_gltf_plan *plan, cwi_gltf_piece *piece)
                                           .normalized = rounded,
                                           .count = m->vertex_count,
                                           .stride = rounded ? 4 : 12});
+    if (piece->part->texture)
+        add_array(piece, (cwi_gltf_array){.use = CWI_GLTF_TEXTURE,
+                                          .component = CWI_GLTF_FLOAT,
+                                          .numbers = 2,
+                                          .count = m->vertex_count,
+                                          .stride = 8});
     if (!m->colors)
         return;
     const bool bytes = fit_bytes(plan, m);
@@ -140,6 +146,10 @@ void cwi_gltf_put(const cwi_gltf_plan *plan, const cwi_gltf_piece *piece,
         break;
     case CWI_GLTF_NORMAL:
         put_normal(a, m->normals + 3 * i, to);
+        break;
+    case CWI_GLTF_TEXTURE:
+        for (size_t c = 0; c < 2; c++)
+            to = cwi_put_f32(to, ((const float *)piece->part->texture->data)[2 * i + c]);
         break;
     default:
         put_color(plan, a, m->colors + 4 * i, to);

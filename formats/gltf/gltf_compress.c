@@ -8,6 +8,7 @@
 #include "core/base/status.h"
 #include "core/geometry/vec3.h"
 #include "core/mesh/mesh.h"
+#include "core/mesh/split_seams.h"
 #include "formats/codec/draco_pack.h"
 #include "formats/codec/meshopt_wrap.h"
 #include "formats/gltf/gltf_formats.h"
@@ -31,16 +32,19 @@ cw_status cwi_gltf_prepare_codec(const cw_write_desc *desc, cw_error *err)
 
 /* --- one origin, arrays of our own -------------------------------------------------------- */
 
-/* Copies a part and moves it to another origin: parts on one grid need a common one. Normals
- * and colours stay the caller's arrays unless they are to be reordered. */
+/* Copies a part and moves it to another origin: parts on one grid need a common one. Normals,
+ * colours and texture coordinates stay the caller's arrays unless they are to be reordered. */
 static cw_status copy_part(const cwi_part *part, const double origin[3], bool all, cw_mesh *own,
                            cw_error *err)
 {
     const cw_mesh *m = &part->mesh;
     cw_status st =
         cwi_mesh_alloc(own, m->vertex_count, m->triangle_count, all && m->normals, err);
+    cw_attribute *texture = NULL;
     if (st == CW_OK && all && m->colors && !(own->colors = cwi_alloc_array(m->vertex_count, 4)))
         st = cwi_fail_memory(err);
+    if (st == CW_OK && all && part->texture)
+        st = cw_mesh_attribute_add(own, part->texture, &texture, err);
     if (st != CW_OK)
         return st;
     for (size_t i = 0; i < 3 * m->vertex_count; i++)
@@ -50,6 +54,8 @@ static cw_status copy_part(const cwi_part *part, const double origin[3], bool al
         memcpy(own->normals, m->normals, 3 * m->vertex_count * sizeof *m->normals);
     if (own->colors)
         memcpy(own->colors, m->colors, 4 * m->vertex_count);
+    if (texture)
+        memcpy(texture->data, part->texture->data, 2 * m->vertex_count * sizeof(float));
     return CW_OK;
 }
 
@@ -81,6 +87,7 @@ static cw_status own_parts(cwi_gltf_plan *plan, bool all, cw_error *err)
         m->triangles = own->triangles;
         m->normals = own->normals ? own->normals : m->normals;
         m->colors = own->colors ? own->colors : m->colors;
+        items[p].texture = all && items[p].texture ? cwi_texture_of(own) : items[p].texture;
         memcpy(m->origin, origin, sizeof origin);
     }
     return CW_OK;
@@ -142,8 +149,9 @@ static cw_status compress_draco(cwi_gltf_plan *plan, cwi_gltf_piece *piece,
         for (size_t i = 0; a->use == CWI_GLTF_COLOR && i < count; i++)
             cwi_gltf_put(plan, piece, a, i, colors + 4 * i);
     }
-    cw_status st = cwi_draco_pack(&piece->part->mesh, colors, &plan->grid, NULL, desc, &packed,
-                                  facts, err);
+    const cw_attribute *texture = piece->part->texture;
+    cw_status st = cwi_draco_pack(&piece->part->mesh, colors, texture ? texture->data : NULL,
+                                  &plan->grid, NULL, desc, &packed, facts, err);
     cwi_free(colors);
     if (st == CW_OK) {
         describe_draco(piece, &plan->grid, &packed.decoded);

@@ -25,7 +25,8 @@ tinygltf::Value text(const std::string &words)
     return tinygltf::Value(words);
 }
 
-const char *const attributes[CWI_GLTF_USES] = {"", "POSITION", "NORMAL", "COLOR_0"};
+const char *const attributes[CWI_GLTF_USES] = {"", "POSITION", "NORMAL", "COLOR_0",
+                                                "TEXCOORD_0"};
 
 tinygltf::Value meshopt_extension(const cwi_gltf_array &a)
 {
@@ -65,6 +66,7 @@ int add_accessor(tinygltf::Model &model, const cwi_gltf_piece &piece, const cwi_
     accessor.bufferView = piece.draco ? -1 : add_view(model, a);
     accessor.componentType = a.component;
     accessor.type = a.numbers == 1   ? TINYGLTF_TYPE_SCALAR
+                    : a.numbers == 2 ? TINYGLTF_TYPE_VEC2
                     : a.numbers == 3 ? TINYGLTF_TYPE_VEC3
                                      : TINYGLTF_TYPE_VEC4;
     accessor.count = size_t(a.count);
@@ -89,6 +91,8 @@ tinygltf::Value draco_extension(tinygltf::Model &model, const cwi_gltf_piece &pi
         ids["NORMAL"] = tinygltf::Value(piece.ids.normal);
     if (piece.ids.color >= 0)
         ids["COLOR_0"] = tinygltf::Value(piece.ids.color);
+    if (piece.ids.texture >= 0)
+        ids["TEXCOORD_0"] = tinygltf::Value(piece.ids.texture);
     return tinygltf::Value(Object{{"bufferView", whole(model.bufferViews.size() - 1)},
                                   {"attributes", tinygltf::Value(ids)}});
 }

@@ -15,6 +15,7 @@ typedef enum cwi_gltf_use {
     CWI_GLTF_POSITION,
     CWI_GLTF_NORMAL,
     CWI_GLTF_COLOR,
+    CWI_GLTF_TEXTURE,
     CWI_GLTF_USES
 } cwi_gltf_use;
 

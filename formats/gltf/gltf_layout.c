@@ -6,6 +6,7 @@
 
 #include "core/base/memory.h"
 #include "core/base/status.h"
+#include "core/mesh/split_seams.h"
 
 #include <math.h>
 #include <string.h>
@@ -21,12 +22,15 @@ void cwi_gltf_plan_free(cwi_gltf_plan *plan)
         cw_mesh_free(&plan->own[i]);
     for (size_t i = 0; plan->split && i < plan->parts.count; i++)
         cw_mesh_free(&plan->split[i]);
+    for (size_t i = 0; plan->seamed && i < plan->parts.count; i++)
+        cw_mesh_free(&plan->seamed[i]);
     for (size_t i = 0; plan->pieces && i < plan->parts.count; i++)
         cwi_color_groups_free(&plan->pieces[i].groups);
     cwi_free(plan->blocks);
     cwi_free(plan->keys);
     cwi_free(plan->own);
     cwi_free(plan->split);
+    cwi_free(plan->seamed);
     cwi_free(plan->pieces);
     cwi_free(plan->parts.items);
     *plan = (cwi_gltf_plan){0};
@@ -104,19 +108,45 @@ static bool needs_split(const cwi_part *part, const cw_write_desc *desc)
            desc->compression == CW_COMPRESS_MESHOPT;
 }
 
-/* Takes the arrays of a mesh whose vertices are split by colour. */
-static cw_status split_part(cwi_part *part, cw_mesh *split, cw_error *err)
+/* Lets a part have the arrays of a mesh whose vertices are split, as far as it had them. */
+static void take_arrays(cwi_part *part, const cw_mesh *split)
 {
     cw_mesh *m = &part->mesh;
-    cw_status st = cwi_split_by_color(part, split, err);
-    if (st != CW_OK)
-        return st;
     m->vertex_count = split->vertex_count;
     m->positions = split->positions;
     m->triangles = split->triangles;
-    m->normals = split->normals;
+    m->normals = m->normals ? split->normals : NULL;
     m->colors = split->colors;
-    return CW_OK;
+    m->attributes = split->attributes;
+    m->attribute_count = split->attribute_count;
+    part->texture = part->texture ? cwi_texture_of(split) : NULL;
+}
+
+/* Splits vertices at the seams of textures. */
+static cw_status split_at_seams(cwi_gltf_plan *plan, cw_error *err)
+{
+    cw_status st = CW_OK;
+    plan->seamed = cwi_alloc_zeroed(plan->parts.count, sizeof *plan->seamed);
+    if (!plan->seamed)
+        return cwi_fail_memory(err);
+    for (size_t p = 0; p < plan->parts.count && st == CW_OK; p++) {
+        cwi_part *part = &plan->parts.items[p];
+        if (!part->texture || part->texture->on != CW_ON_CORNERS)
+            continue;
+        st = cwi_split_seams(&part->mesh, &plan->seamed[p], err);
+        if (st == CW_OK)
+            take_arrays(part, &plan->seamed[p]);
+    }
+    return st;
+}
+
+/* Splits vertices by colour. */
+static cw_status split_part(cwi_part *part, cw_mesh *split, cw_error *err)
+{
+    cw_status st = cwi_split_by_color(part, split, err);
+    if (st == CW_OK)
+        take_arrays(part, split);
+    return st;
 }
 
 /* Plans colours of triangles: as that of the part, as groups, or as colours of split vertices. */
@@ -228,6 +258,8 @@ cw_status cwi_gltf_plan_make(cwi_gltf_plan *plan, const cwi_parts *parts,
 {
     cwi_gltf_document *d = &plan->document;
     cw_status st = make_pieces(plan, parts, err);
+    if (st == CW_OK)
+        st = split_at_seams(plan, err);
     if (st == CW_OK)
         st = plan_colors(plan, out->desc, err);
     if (st == CW_OK)

@@ -4,6 +4,7 @@
 #include "core/base/memory.h"
 #include "core/base/status.h"
 #include "core/mesh/mesh.h"
+#include "core/mesh/split_seams.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -141,6 +142,9 @@ static void copy_vertex(const cw_mesh *from, size_t v, cw_mesh *to, size_t at, u
     memcpy(to->positions + 3 * at, from->positions + 3 * v, 3 * sizeof *to->positions);
     if (to->normals)
         memcpy(to->normals + 3 * at, from->normals + 3 * v, 3 * sizeof *to->normals);
+    if (to->attribute_count) /* texture coordinates alone */
+        memcpy((float *)to->attributes->data + 2 * at,
+               (const float *)cwi_texture_of(from)->data + 2 * v, 2 * sizeof(float));
     for (size_t c = 0; c < 4; c++)
         to->colors[4 * at + c] = (uint8_t)(color >> (24 - 8 * c));
 }
@@ -193,6 +197,8 @@ cw_status cwi_split_by_color(const cwi_part *part, cw_mesh *split, cw_error *err
     }
     if (st == CW_OK && !(split->colors = cwi_alloc_array(s.count, 4)))
         st = cwi_fail_memory(err);
+    if (st == CW_OK && part->texture)
+        st = cw_mesh_attribute_add(split, part->texture, NULL, err);
     if (st == CW_OK) {
         split_vertices(&s, split);
         copy_unused(&s, split);

@@ -35,7 +35,8 @@ CW_NODISCARD cw_status cwi_group_faces(const cwi_part *part, cwi_color_groups *g
 void cwi_color_groups_free(cwi_color_groups *groups);
 
 /* Makes a mesh whose vertices have the colours of the triangles around them: a vertex of several is there
- * once for each. The first copy keeps its number. Triangles keep their order; normals are copied.
+ * once for each. The first copy keeps its number. Triangles keep their order; normals and the
+ * texture coordinates of vertices are copied.
  * split    zeroed; free it with cw_mesh_free(), also on failure
  * Returns  CW_ERR_LIMIT, CW_ERR_NO_MEMORY */
 CW_NODISCARD cw_status cwi_split_by_color(const cwi_part *part, cw_mesh *split, cw_error *err);

@@ -5,6 +5,7 @@
 #include "core/base/status.h"
 #include "core/base/text.h"
 #include "core/mesh/mesh_attributes.h"
+#include "core/mesh/split_seams.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -91,11 +92,14 @@ static const uint8_t *find_face_colors(const cw_mesh *mesh)
 
 unsigned cwi_arrays_of(const cw_mesh *mesh)
 {
+    const size_t known =
+        (size_t)(find_face_colors(mesh) != NULL) + (size_t)(cwi_texture_of(mesh) != NULL);
     unsigned has =
         (mesh->normals ? CW_KEEPS_NORMALS : 0u) | (mesh->colors ? CW_KEEPS_COLORS : 0u) |
         (mesh->scalars ? CW_KEEPS_SCALARS : 0u) | (mesh->labels ? CW_KEEPS_LABELS : 0u) |
         (find_face_colors(mesh) ? CW_KEEPS_FACE_COLORS : 0u) |
-        (mesh->attribute_count > (find_face_colors(mesh) ? 1 : 0) ? CW_KEEPS_ATTRIBUTES : 0u);
+        (cwi_texture_of(mesh) ? CW_KEEPS_TEXTURE : 0u) |
+        (mesh->attribute_count > known ? CW_KEEPS_ATTRIBUTES : 0u);
     for (int i = 0; i < 12; i++)
         has |= mesh->affine[i / 4][i % 4] != 0 ? CW_KEEPS_AFFINE : 0u;
     return has;
@@ -149,6 +153,8 @@ static void choose_arrays(cwi_parts *parts, unsigned keeps)
         part->arrays &= keeps & CW_KEEPS_PARTS ? keeps : shared;
         part->face_colors =
             part->arrays & CW_KEEPS_FACE_COLORS ? find_face_colors(&part->mesh) : NULL;
+        part->texture =
+            part->arrays & CW_KEEPS_TEXTURE ? cwi_texture_of(&part->mesh) : NULL;
         keep_arrays(&part->mesh, part->arrays);
         if (keeps & CW_KEEPS_PARTS && keeps & CW_KEEPS_COLORS)
             choose_color(part);

@@ -3,13 +3,15 @@
 
 #include "core/base/memory.h"
 #include "core/base/status.h"
+#include "core/mesh/corner_table.h"
+#include "core/mesh/split_seams.h"
 #include "formats/obj/obj_format.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { MATERIAL_BYTES = CWI_NAME_BYTES + 32, COLOR_NAME_BYTES = 24 };
+enum { MATERIAL_BYTES = CWI_NAME_BYTES + 32, COLOR_NAME_BYTES = 24, TEXTURE_DIGITS = 9 };
 
 static unsigned char *encode_place(const cwi_part *part, size_t v, unsigned char *to)
 {
@@ -45,6 +47,13 @@ static unsigned char *encode_material(const cwi_part *part, size_t t, unsigned c
     return cwi_put_text(cwi_put_text(cwi_put_text(to, "usemtl "), name), "\n");
 }
 
+/* Returns the number of a corner's texture coordinate in the file, from 0 on. */
+static uint64_t place_of(const cwi_part *part, size_t t, int c)
+{
+    const size_t corner = 3 * t + (size_t)c;
+    return part->first_place + (part->places ? part->places[corner] : part->mesh.triangles[corner]);
+}
+
 /* Encodes a face. Numbers start at 1, and continue from object to object. */
 static unsigned char *encode_face(const cwi_part *part, size_t t, unsigned char *to)
 {
@@ -54,8 +63,10 @@ static unsigned char *encode_face(const cwi_part *part, size_t t, unsigned char 
     for (int c = 0; c < 3; c++) {
         const uint64_t number = cwi_corner_number(part, t, c) + 1;
         to = cwi_put_integer(cwi_put_text(to, " "), number);
+        if (part->texture)
+            to = cwi_put_integer(cwi_put_text(to, "/"), place_of(part, t, c) + 1);
         if (part->arrays & CW_KEEPS_NORMALS)
-            to = cwi_put_integer(cwi_put_text(to, "//"),
+            to = cwi_put_integer(cwi_put_text(to, part->texture ? "/" : "//"),
                                  number - part->first + part->first_normal);
     }
     return cwi_put_text(to, "\n");
@@ -154,7 +165,45 @@ static cw_status write_materials(const cwi_parts *parts, cwi_mesh_output *out, c
     return st;
 }
 
-static cw_status write_object(const cwi_part *part, cwi_mesh_output *out, cw_error *err)
+/* Writes texture coordinates; in OBJ the second one goes up. seams: zeroed if vertices have them */
+static cw_status write_places(const cwi_part *part, const cwi_seams *seams, cwi_mesh_output *out,
+                              cw_error *err)
+{
+    unsigned char line[CWI_RECORD_BYTES];
+    const float *uv = part->texture->data;
+    const size_t count = seams->number ? seams->count : part->mesh.vertex_count;
+    cw_status st = CW_OK;
+    for (size_t n = 0; n < count && st == CW_OK; n++) {
+        const uint32_t at = seams->number ? seams->corner[n] : (uint32_t)n;
+        const double u = at == CWI_NO_CORNER ? 0 : (double)uv[2 * (size_t)at],
+                     v = at == CWI_NO_CORNER ? 0 : 1 - (double)uv[2 * (size_t)at + 1];
+        unsigned char *to = cwi_put_decimal(cwi_put_text(line, "vt "), u, TEXTURE_DIGITS);
+        to = cwi_put_text(cwi_put_decimal(cwi_put_text(to, " "), v, TEXTURE_DIGITS), "\n");
+        st = cwi_outfile_write(out->file, line, (size_t)(to - line), err);
+    }
+    return st;
+}
+
+static cw_status write_faces(cwi_part *part, cwi_mesh_output *out, uint64_t *places, cw_error *err)
+{
+    cwi_seams seams = {0};
+    const bool has_seams = part->texture && part->texture->on == CW_ON_CORNERS;
+    cw_status st = has_seams ? cwi_seams_find(&part->mesh, &seams, err) : CW_OK;
+    part->first_place = *places;
+    part->places = seams.number;
+    if (st == CW_OK && part->texture) {
+        *places += has_seams ? seams.count : part->mesh.vertex_count;
+        st = write_places(part, &seams, out, err);
+    }
+    if (st == CW_OK)
+        st = cwi_write_records(part, CWI_TRIANGLES, out, encode_face, err);
+    cwi_seams_free(&seams);
+    part->places = NULL;
+    return st;
+}
+
+static cw_status write_object(cwi_part *part, cwi_mesh_output *out, uint64_t *places,
+                              cw_error *err)
 {
     char material[MATERIAL_BYTES];
     cw_status st = cwi_outfile_printf(out->file, err, "o %s\n", part->name);
@@ -166,9 +215,7 @@ static cw_status write_object(const cwi_part *part, cwi_mesh_output *out, cw_err
         st = cwi_write_records(part, CWI_VERTICES, out, encode_place, err);
     if (st == CW_OK && part->arrays & CW_KEEPS_NORMALS)
         st = cwi_write_records(part, CWI_VERTICES, out, encode_normal, err);
-    if (st == CW_OK)
-        st = cwi_write_records(part, CWI_TRIANGLES, out, encode_face, err);
-    return st;
+    return st == CW_OK ? write_faces(part, out, places, err) : st;
 }
 
 cw_status cwi_obj_write(const cwi_parts *parts, cwi_mesh_output *out, cw_error *err)
@@ -181,12 +228,13 @@ cw_status cwi_obj_write(const cwi_parts *parts, cwi_mesh_output *out, cw_error *
     out->total += last->arrays & CW_KEEPS_NORMALS ? last->mesh.vertex_count : 0;
     cw_status st =
         cwi_outfile_printf(out->file, err, "# cubewright %s, %s\n%s", CW_VERSION, axes, origin);
+    uint64_t places = 0;
     bool has_materials = has_face_colors(parts);
     for (size_t i = 0; i < parts->count; i++)
         has_materials = has_materials || has_material(&parts->items[i]);
     if (st == CW_OK && has_materials)
         st = write_materials(parts, out, err);
     for (size_t i = 0; i < parts->count && st == CW_OK; i++)
-        st = write_object(&parts->items[i], out, err);
+        st = write_object(&parts->items[i], out, &places, err);
     return st;
 }

@@ -9,7 +9,8 @@ extern "C" {
 #endif
 
 /* The name of the attribute with texture coordinates: CW_ON_CORNERS, CW_F32, 2 components,
- * CW_INTERPOLATE_LINEAR. (0, 0) is the lower left corner of the texture, (1, 1) the upper right one. */
+ * CW_INTERPOLATE_LINEAR. (0, 0) is the upper left corner of the texture's image, (1, 1) the lower right
+ * one, as in glTF. On vertices instead of corners, each vertex has one. */
 #define CW_TEXTURE_COORDINATES "texture_coordinates"
 
 /* Settings of an atlas. Zero-initialise the struct and set what you need; a zero field means the

@@ -722,10 +722,11 @@ typedef enum cw_keeps {
     CW_KEEPS_AFFINE = 64,
     CW_KEEPS_PARTS = 128, /* several meshes, with names */
     CW_KEEPS_ATTRIBUTES =
-        256, /* those of cw_mesh.attributes but CW_FACE_COLORS: no format so far */
+        256, /* those of cw_mesh.attributes but the two below: no format so far */
     CW_KEEPS_FACE_COLORS = 512, /* CW_FACE_COLORS */
     CW_KEEPS_OPACITY = 1024,    /* of vertices, beside their colours */
-    CW_KEEPS_ALL = 2047
+    CW_KEEPS_TEXTURE = 2048,    /* CW_TEXTURE_COORDINATES; glTF splits vertices at seams */
+    CW_KEEPS_ALL = 4095
 } cw_keeps;
 
 /* A format that this build or another one reads or writes. */

@@ -136,18 +136,19 @@ static void set_coordinates(const charting *c, const cwi_atlas_packing *p, float
             const double x = place->turn[0] * from[0] - place->turn[1] * from[1],
                          y = place->turn[1] * from[0] + place->turn[0] * from[1];
             to[0] = (float)((p->density * x + place->shift[0]) / p->size);
-            to[1] = (float)((p->density * y + place->shift[1]) / p->size);
+            to[1] = (float)(1 - (p->density * y + place->shift[1]) / p->size);
         }
     }
 }
 
+/* Returns the area of a triangle in the texture; negative if it is seen from behind. */
 static double signed_area(const float (*uv)[2])
 {
     const double ux = (double)uv[1][0] - (double)uv[0][0],
                  uy = (double)uv[1][1] - (double)uv[0][1],
                  vx = (double)uv[2][0] - (double)uv[0][0],
                  vy = (double)uv[2][1] - (double)uv[0][1];
-    return (ux * vy - uy * vx) / 2;
+    return (uy * vx - ux * vy) / 2; /* y goes down */
 }
 
 /* Returns true if the two triangles along a side lie side by side in the texture, too. */

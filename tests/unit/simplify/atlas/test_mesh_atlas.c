@@ -21,9 +21,10 @@ static const float (*coordinates_of(const cw_mesh *mesh))[2]
     return uv->data;
 }
 
+/* Positive as seen in the image, whose second axis goes down. */
 static double area_of(const float (*uv)[2])
 {
-    return ((double)(uv[1][0] - uv[0][0]) * (double)(uv[2][1] - uv[0][1]) -
+    return -((double)(uv[1][0] - uv[0][0]) * (double)(uv[2][1] - uv[0][1]) -
             (double)(uv[1][1] - uv[0][1]) * (double)(uv[2][0] - uv[0][0])) /
            2;
 }
