@@ -12,14 +12,19 @@
 #include <stdlib.h>
 #include <string.h>
 
+static const char *written_extensions(const cwi_format_driver *f)
+{
+    return f->write.extensions ? f->write.extensions : f->extensions;
+}
+
 /* Returns the writer's index among the formats, or the number of formats when there is none. */
 static size_t find_writer(const char *path, const char *name)
 {
     const cwi_format_driver *f;
     size_t n = 0;
     for (; (f = cwi_format_at(n)) != NULL; n++)
-        if (f->write.write &&
-            (name ? strcmp(f->name, name) == 0 : cwi_has_extension(path, f->extensions)))
+        if (f->write.write && (name ? strcmp(f->name, name) == 0
+                                    : cwi_has_extension(path, written_extensions(f))))
             break;
     return n;
 }
@@ -41,7 +46,7 @@ static const char *writer_name(const cwi_format_driver *f)
 
 static const char *writer_extensions(const cwi_format_driver *f)
 {
-    return f->write.write && *f->extensions ? f->extensions : NULL;
+    return f->write.write && *f->extensions ? written_extensions(f) : NULL;
 }
 
 static const char *text_writer_name(const cwi_format_driver *f)

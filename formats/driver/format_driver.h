@@ -39,7 +39,8 @@ typedef struct cwi_mesh_reading {
 } cwi_mesh_reading;
 
 typedef struct cwi_mesh_writing {
-    cwi_mesh_writer *write;              /* NULL: it writes no mesh */
+    const char *extensions; /* extensions that are written; NULL: those of the format */
+    cwi_mesh_writer *write; /* NULL: it writes no mesh */
     cw_status (*prepare)(cw_error *err); /* finds its modules; NULL: nothing to find */
     /* Refuses requests that the format has no place for; NULL: nothing to refuse. */
     cw_status (*check)(const cw_write_desc *desc, cw_error *err);

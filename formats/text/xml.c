@@ -89,7 +89,8 @@ static int find_row(const cwi_xml *x, const char *name)
     const int parent = row_at(x);
     name = local_name(name);
     for (int i = 0; i < x->rules->element_count; i++)
-        if (elements[i].parent == parent && strcmp(elements[i].name, name) == 0)
+        if ((elements[i].parent == parent || (i > 0 && i == parent && i == x->rules->nests)) &&
+            strcmp(elements[i].name, name) == 0)
             return i;
     return OTHER;
 }

@@ -390,6 +390,10 @@ typedef struct cw_mesh_file {
     /* Of 3MF: triangles of modifiers, blockers of supports and negative volumes, as slicers call
      * them: left out. */
     size_t modifier_triangles;
+
+    /* Of VTK's files in pieces: pieces that were joined; vertices that are one with others of a
+     * seam; cells left out, as another piece has them or they are hidden. 0: one piece, none. */
+    size_t pieces, merged_vertices, marked_cells;
 } cw_mesh_file;
 
 /* Reads a mesh: all parts of the file, merged, in LPS millimetres.

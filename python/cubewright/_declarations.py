@@ -1849,6 +1849,9 @@ class cw_mesh_file(Structure):
     attribute_bytes: int
     not_applied: Any
     modifier_triangles: int
+    pieces: int
+    merged_vertices: int
+    marked_cells: int
 
 
 cw_mesh_file._fields_ = [
@@ -1874,6 +1877,9 @@ cw_mesh_file._fields_ = [
     ("attribute_bytes", c_uint64),
     ("not_applied", c_char * 160),
     ("modifier_triangles", c_size_t),
+    ("pieces", c_size_t),
+    ("merged_vertices", c_size_t),
+    ("marked_cells", c_size_t),
 ]
 
 
