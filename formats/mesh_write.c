@@ -74,6 +74,12 @@ static cw_status check_axes(const cwi_format_driver *f, const cw_axes *axes, cw_
         return cwi_fail(err, CW_ERR_ARGUMENT,
                         "%s is in metres, +Y up and facing +Z: it has no other unit or frame",
                         f->name);
+    if (f->write.ras_mm && (axes->unit != CW_UNIT_MM || axes->y_up))
+        return cwi_fail(
+            err, CW_ERR_ARGUMENT,
+            "%s is in millimetres, right-anterior-superior: it has no other unit or "
+            "frame",
+            f->name);
     return CW_OK;
 }
 
@@ -327,6 +333,8 @@ cw_status cw_parts_write_with_consent(const char *path, const cw_part *parts, si
                       "the sides of triangles are those of one mesh, not of %zu", count);
     if (st == CW_OK && f->write.own_axes)
         d.axes = (cw_axes){0};
+    if (st == CW_OK && f->write.ras_mm)
+        d.axes = (cw_axes){.unit = CW_UNIT_MM, .ras = true};
     if (st == CW_OK && f->write.only)
         d.compression = f->write.only;
     if (st == CW_OK)

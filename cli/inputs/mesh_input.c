@@ -70,6 +70,8 @@ static void say_what_was_found(const cli_mesh *m)
     say_truncated(m);
     say_miscounted(m);
     say_pieces(m);
+    if (*m->file.placed)
+        cli_say("%s: placed in the frame of the scanner by %s", m->path, m->file.placed);
     if (m->part_count > 1)
         cli_say("%s: %zu parts", m->path, m->part_count);
     else if (!m->parts && m->file.parts > 1)

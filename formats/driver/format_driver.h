@@ -47,8 +47,9 @@ typedef struct cwi_mesh_writing {
     /* It writes a folder, and replaces an old one that passes this check; NULL: it writes a
      * file. */
     cwi_folder_check *replaces;
-    bool own_axes;       /* unit and frame are those of the format */
-    bool text;           /* it is text, or can be */
+    bool own_axes; /* unit and frame are those of the format */
+    bool ras_mm;   /* unit and frame are millimetres, right-anterior-superior, and no others */
+    bool text;     /* it is text, or can be */
     bool compresses;     /* it has compressed forms */
     cw_compression only; /* it has this form alone */
     bool levels;         /* it has levels of detail */

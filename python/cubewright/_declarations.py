@@ -1852,6 +1852,7 @@ class cw_mesh_file(Structure):
     pieces: int
     merged_vertices: int
     marked_cells: int
+    placed: Any
 
 
 cw_mesh_file._fields_ = [
@@ -1880,6 +1881,7 @@ cw_mesh_file._fields_ = [
     ("pieces", c_size_t),
     ("merged_vertices", c_size_t),
     ("marked_cells", c_size_t),
+    ("placed", c_char * 128),
 ]
 
 
