@@ -205,11 +205,18 @@ static cw_status read_faces(const surface *s, cwi_mesh_build *b, cw_mesh_file *m
 
 /* --- the volume's geometry ---------------------------------------------------------------- */
 
+/* Returns the start of the next line; NULL behind the last one. */
+static const char *next_line(const char *line)
+{
+    const char *end = strchr(line, '\n');
+    return end ? end + 1 : NULL;
+}
+
 /* Parses the numbers of the line "NAME = X Y Z". Returns false if they are not there. */
 static bool find_numbers(const char *text, const char *name, int count, double *numbers)
 {
     const size_t length = strlen(name);
-    for (const char *line = text; line; line = strchr(line, '\n'), line += line != NULL) {
+    for (const char *line = text; line; line = next_line(line)) {
         const char *at = line + length;
         if (strncmp(line, name, length) != 0 || at[strspn(at, " ")] != '=')
             continue;
