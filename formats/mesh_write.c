@@ -12,14 +12,19 @@
 #include <stdlib.h>
 #include <string.h>
 
+static const char *written_extensions(const cwi_format_driver *f)
+{
+    return f->write.extensions ? f->write.extensions : f->extensions;
+}
+
 /* Returns the writer's index among the formats, or the number of formats when there is none. */
 static size_t find_writer(const char *path, const char *name)
 {
     const cwi_format_driver *f;
     size_t n = 0;
     for (; (f = cwi_format_at(n)) != NULL; n++)
-        if (f->write.write &&
-            (name ? strcmp(f->name, name) == 0 : cwi_has_extension(path, f->extensions)))
+        if (f->write.write && (name ? strcmp(f->name, name) == 0
+                                    : cwi_has_extension(path, written_extensions(f))))
             break;
     return n;
 }
@@ -41,7 +46,7 @@ static const char *writer_name(const cwi_format_driver *f)
 
 static const char *writer_extensions(const cwi_format_driver *f)
 {
-    return f->write.write && *f->extensions ? f->extensions : NULL;
+    return f->write.write && *f->extensions ? written_extensions(f) : NULL;
 }
 
 static const char *text_writer_name(const cwi_format_driver *f)
@@ -69,6 +74,12 @@ static cw_status check_axes(const cwi_format_driver *f, const cw_axes *axes, cw_
         return cwi_fail(err, CW_ERR_ARGUMENT,
                         "%s is in metres, +Y up and facing +Z: it has no other unit or frame",
                         f->name);
+    if (f->write.ras_mm && (axes->unit != CW_UNIT_MM || axes->y_up))
+        return cwi_fail(
+            err, CW_ERR_ARGUMENT,
+            "%s is in millimetres, right-anterior-superior: it has no other unit or "
+            "frame",
+            f->name);
     return CW_OK;
 }
 
@@ -328,6 +339,8 @@ cw_status cw_parts_write_with_consent(const char *path, const cw_part *parts, si
                       "the sides of triangles are those of one mesh, not of %zu", count);
     if (st == CW_OK && f->write.own_axes)
         d.axes = (cw_axes){0};
+    if (st == CW_OK && f->write.ras_mm)
+        d.axes = (cw_axes){.unit = CW_UNIT_MM, .ras = true};
     if (st == CW_OK && f->write.only)
         d.compression = f->write.only;
     if (st == CW_OK)

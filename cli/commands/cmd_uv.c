@@ -78,12 +78,13 @@ static void put_facts(cli_json *j, const cli_mesh_run *r)
 static cw_status report_facts(cli_mesh_run *r, cw_error *err)
 {
     const cw_atlas_facts *f = r->state;
-    snprintf(r->found, sizeof r->found,
-             "; %s chart%s, %s edges of seams, %s vertices with one coordinate each; %u x %u texels, "
-             "%.0f %% covered, %.3g for a mm; stretch %.3f",
-             cli_count(f->charts), f->charts == 1 ? "" : "s", cli_count(f->seams),
-             cli_count(f->vertices), f->size, f->size, 100 * f->coverage, f->texels_per_mm,
-             f->stretch);
+    snprintf(
+        r->found, sizeof r->found,
+        "; %s chart%s, %s edges of seams, %s vertices with one coordinate each; %u x %u texels, "
+        "%.0f %% covered, %.3g for a mm; stretch %.3f",
+        cli_count(f->charts), f->charts == 1 ? "" : "s", cli_count(f->seams),
+        cli_count(f->vertices), f->size, f->size, 100 * f->coverage, f->texels_per_mm,
+        f->stretch);
     if (f->flipped)
         cli_report_warn(&r->report, "single precision turned %s triangles over: --atlas %u",
                         cli_count(f->flipped), 2 * f->size);

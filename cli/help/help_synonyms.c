@@ -82,7 +82,7 @@ const cli_synonym cli_synonyms[] = {
     {"ram|out of memory", "memory", "--memory|--max-voxels|--max-triangles", NULL},
     {"cpu|core|parallel|speed|fast|slow", "threads", "--threads|--preview|--accel|--progress",
      NULL},
-    {"stl|obj|gltf|glb|ply|off|3mf|vtp|nifti|nrrd|tiff|vdb|openvdb|export|import|file type",
+    {"stl|obj|gltf|glb|ply|off|3mf|vtp|gifti|freesurfer|nifti|nrrd|tiff|vdb|openvdb|export|import|file type",
      NULL, "convert|formats|--format|--reader|--output", NULL},
     {"print|printer|3d print|slicer|resin", NULL, "print|hollow|--profile|--drain", NULL},
     {"quality|validate|verify|inspect|lint", "check", "check|--profile|--deep|--check", NULL},

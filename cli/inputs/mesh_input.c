@@ -48,6 +48,17 @@ static void say_miscounted(const cli_mesh *m)
                 cli_count((size_t)m->file.attribute_bytes));
 }
 
+static void say_pieces(const cli_mesh *m)
+{
+    const cw_mesh_file *f = &m->file;
+    if (f->pieces)
+        cli_say("%s: %zu pieces read; %s vertices on their seams are one with others", m->path,
+                f->pieces, cli_count(f->merged_vertices));
+    if (f->marked_cells)
+        cli_say("%s: %s cells left out, as they are hidden or another piece's", m->path,
+                cli_count(f->marked_cells));
+}
+
 static void say_what_was_found(const cli_mesh *m)
 {
     size_t vertices = m->mesh.vertex_count;
@@ -58,6 +69,9 @@ static void say_what_was_found(const cli_mesh *m)
             m->file.known & CW_KNOWN_UNIT ? "" : " (no unit given: taken as mm)");
     say_truncated(m);
     say_miscounted(m);
+    say_pieces(m);
+    if (*m->file.placed)
+        cli_say("%s: placed in the frame of the scanner by %s", m->path, m->file.placed);
     if (m->part_count > 1)
         cli_say("%s: %zu parts", m->path, m->part_count);
     else if (!m->parts && m->file.parts > 1)

@@ -113,7 +113,8 @@ void cwi_seams_free(cwi_seams *seams)
 /* --- copies with one coordinate a vertex ----------------------------------------------------- */
 
 /* Copies all but texture coordinates. like: the mesh without them */
-static cw_status copy_mesh(const cwi_seams *s, const cw_mesh *like, cw_mesh *copy, cw_error *err)
+static cw_status copy_mesh(const cwi_seams *s, const cw_mesh *like, cw_mesh *copy,
+                           cw_error *err)
 {
     cw_status st = cwi_mesh_alloc(copy, s->count, like->triangle_count, false, err);
     if (st == CW_OK)

@@ -7,6 +7,7 @@
 #include "core/base/text.h"
 #include "core/volume/volume.h"
 #include "formats/cells/cell_connectivity.h"
+#include "formats/cells/grid_overlap.h"
 #include "formats/cells/merge_samples.h"
 #include "formats/cells/vtk_cell_types.h"
 #include "formats/volume/volume_reader.h"
@@ -25,7 +26,7 @@ static const size_t MAX_SAMPLES = UINT32_MAX - 1;
  * the cells that stay. The second has room for exactly those. */
 typedef struct building {
     const cwi_irregular *g;
-    const cwi_input *in;
+    const cwi_input *in, *side; /* side: the file of the piece at hand, if it has its own */
     const cw_read_desc *desc;
     uint64_t bytes;       /* of memory taken so far */
     uint64_t claimed;     /* minimum bytes of the file for all arrays */
@@ -60,6 +61,24 @@ static cw_status take_bytes(building *b, uint64_t bytes, cw_error *err)
                     limit);
 }
 
+/* Opens the file of a piece. */
+static cw_status open_piece(building *b, size_t piece, cw_error *err)
+{
+    b->side = NULL;
+    return b->g->open ? b->g->open(b->g->file, piece, &b->side, err) : CW_OK;
+}
+
+/* Puts the name of the piece's own file in front of the message of a failure. */
+static cw_status end_piece(const building *b, cw_status st, cw_error *err)
+{
+    return st == CW_OK || !b->side ? st : cwi_fail_in(err, st, b->side->path);
+}
+
+static const cwi_input *file_of(const building *b)
+{
+    return b->side ? b->side : b->in;
+}
+
 static cw_status describe_array(const building *b, size_t piece, cwi_grid_role role,
                                 size_t count, cwi_source *src, bool *wide, cw_error *err)
 {
@@ -90,7 +109,7 @@ static cw_status load_array(building *b, size_t piece, cwi_grid_role role, size_
         st = take_bytes(b, src.bytes, err);
     b->now = (double)src.bytes;
     if (st == CW_OK)
-        st = cwi_tuples_load(&src, b->in, &desc, wide, t, err);
+        st = cwi_tuples_load(&src, file_of(b), &desc, wide, t, err);
     cwi_source_free(&src);
     b->done += b->now;
     return st;
@@ -113,18 +132,20 @@ static cw_status check_array(building *b, size_t piece, cwi_grid_role role, size
         return CW_OK;
     cw_status st = describe_array(b, piece, role, count, &src, &wide, err);
     if (st == CW_OK)
-        st = cwi_source_load(&src, b->in, &(cw_read_desc){.header_only = true}, &shape, err);
+        st = cwi_source_load(&src, file_of(b), &(cw_read_desc){.header_only = true}, &shape,
+                             err);
     b->total += (double)src.bytes;
     b->claimed += src.encoding == CWI_RAW ? src.bytes : src.bytes / 1032;
     cwi_source_free(&src);
     if (st != CW_OK)
         return st;
-    if (b->claimed <= b->in->size)
+    const uint64_t held = b->g->file_bytes ? b->g->file_bytes : b->in->size;
+    if (b->claimed <= held)
         return CW_OK;
     return cwi_fail(err, CW_ERR_FORMAT,
                     "the arrays up to piece %zu take %llu bytes of the file, which has %llu: "
                     "some share theirs",
-                    piece, (unsigned long long)b->claimed, (unsigned long long)b->in->size);
+                    piece, (unsigned long long)b->claimed, (unsigned long long)held);
 }
 
 /* --- first pass: checks ------------------------------------------------------------------ */
@@ -236,7 +257,8 @@ static cw_status apply_marks(building *b, size_t piece, uint8_t *types, cw_error
     cw_status st =
         load_array(b, piece, CWI_GRID_CELL_MARKS, p->has_cell_marks ? p->cells : 0, &t[0], err);
     for (size_t n = 0; n < t[0].count && st == CW_OK; n++)
-        if (cwi_tuples_whole(&t[0], n) & LEFT_OUT_CELL)
+        if (p->marks_are_levels ? cwi_tuples_whole(&t[0], n) > 0
+                                : cwi_tuples_whole(&t[0], n) & LEFT_OUT_CELL)
             leave_out(b, &types[n]);
     drop_array(b, &t[0]);
     if (st == CW_OK)
@@ -284,8 +306,12 @@ static cw_status find_cells(building *b, cw_error *err)
 {
     const cwi_irregular *g = b->g;
     cw_status st = count_pieces(b, err);
-    for (size_t n = 0; n < g->piece_count && st == CW_OK; n++)
-        st = check_arrays(b, n, err);
+    for (size_t n = 0; n < g->piece_count && st == CW_OK; n++) {
+        st = open_piece(b, n, err);
+        if (st == CW_OK)
+            st = check_arrays(b, n, err);
+        st = end_piece(b, st, err);
+    }
     if (st == CW_OK)
         st = set_shape(b, err);
     if (st == CW_OK)
@@ -294,10 +320,15 @@ static cw_status find_cells(building *b, cw_error *err)
         st = cwi_fail_memory(err);
     uint8_t *types = b->types;
     for (size_t n = 0; n < g->piece_count && st == CW_OK; types += g->pieces[n++].cells) {
-        st = read_types(b, n, types, err);
+        st = open_piece(b, n, err);
+        if (st == CW_OK)
+            st = read_types(b, n, types, err);
         if (st == CW_OK)
             st = apply_marks(b, n, types, err);
+        st = end_piece(b, st, err);
     }
+    if (st == CW_OK && is_curvilinear(&g->pieces[0]))
+        st = cwi_grid_leave_out_repeated(g->pieces, g->piece_count, b->types, &b->marked, err);
     return st;
 }
 
@@ -427,11 +458,14 @@ static cw_status read_cells(building *b, cw_error *err)
     cw_status st = CW_OK;
     for (size_t n = 0; n < g->piece_count && st == CW_OK; n++) {
         const cwi_grid_piece *p = &g->pieces[n];
-        st = read_points(b, n, first, err);
+        st = open_piece(b, n, err);
+        if (st == CW_OK)
+            st = read_points(b, n, first, err);
         if (st == CW_OK && is_curvilinear(p))
             number_corners(p, types, first, &to);
         else if (st == CW_OK)
             st = read_corners(b, n, types, first, &to, err);
+        st = end_piece(b, st, err);
         types += p->cells;
         first += p->points;
     }
@@ -460,13 +494,16 @@ static cw_status read_values(building *b, cw_error *err)
     cw_status st = allocate_values(b, err);
     char *to = b->volume.owned;
     for (size_t n = 0; n < b->g->piece_count && st == CW_OK; n++) {
-        cwi_tuples t;
+        cwi_tuples t = {0};
         const size_t bytes = value_bytes(b) * b->g->pieces[n].points;
-        st = load_array(b, n, CWI_GRID_VALUES, b->g->pieces[n].points, &t, err);
+        st = open_piece(b, n, err);
+        if (st == CW_OK)
+            st = load_array(b, n, CWI_GRID_VALUES, b->g->pieces[n].points, &t, err);
         if (st == CW_OK && bytes)
             memcpy(to, t.data.data, bytes);
         to += bytes;
         drop_array(b, &t);
+        st = end_piece(b, st, err);
     }
     return st;
 }
@@ -495,8 +532,10 @@ static cw_status add_values(building *b, uint32_t *around, cw_error *err)
     const uint32_t *corners = b->corners;
     cw_status st = CW_OK;
     for (size_t n = 0; n < g->piece_count && st == CW_OK; types += g->pieces[n++].cells) {
-        cwi_tuples t;
-        st = load_array(b, n, CWI_GRID_VALUES, g->pieces[n].cells, &t, err);
+        cwi_tuples t = {0};
+        st = open_piece(b, n, err);
+        if (st == CW_OK)
+            st = load_array(b, n, CWI_GRID_VALUES, g->pieces[n].cells, &t, err);
         for (size_t c = 0; c < t.count && st == CW_OK; c++) {
             if (types[c] == CWI_VTK_EMPTY)
                 continue;
@@ -505,6 +544,7 @@ static cw_status add_values(building *b, uint32_t *around, cw_error *err)
             corners += count;
         }
         drop_array(b, &t);
+        st = end_piece(b, st, err);
     }
     return st;
 }
@@ -568,7 +608,7 @@ static void note_count(const building *b, const char *what, size_t count)
 static void note_cells(const building *b)
 {
     note_count(b, "left out, as they have fewer than three dimensions", b->flat);
-    note_count(b, "left out, as they are hidden or another piece's (vtkGhostType)", b->marked);
+    note_count(b, "left out, as they are hidden or another piece's", b->marked);
     note_count(b, "curved, and taken as straight, by their corners alone", b->curved);
     if (b->g->of_cells)
         cwi_note(b->desc,

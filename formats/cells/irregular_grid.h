@@ -21,9 +21,11 @@ typedef struct cwi_grid_piece {
     size_t points, cells;
     size_t along[3]; /* points along x, y, z of a curvilinear grid, which has neither types nor
                         corners; else 0 */
-    size_t listed;   /* length of a list of corners where each cell's count precedes its
+    int64_t low[3]; /* of such a grid: number of the first point along each axis of the whole */
+    size_t listed;  /* length of a list of corners where each cell's count precedes its
                         corners, and there are no ends; else 0 */
     bool has_point_marks, has_cell_marks;
+    bool marks_are_levels; /* cells have vtkGhostLevels, as older files do, not vtkGhostType */
 } cwi_grid_piece;
 
 /* The description of a grid by its header. Everything in it is borrowed. */
@@ -40,6 +42,10 @@ typedef struct cwi_irregular {
     cw_status (*describe)(const void *file, size_t piece, cwi_grid_role role, size_t count,
                           cwi_source *src, bool *wide, cw_error *err);
     const void *file;
+
+    /* Opens the file of a piece, with its name as the path; NULL: all are in one file. */
+    cw_status (*open)(const void *file, size_t piece, const cwi_input **in, cw_error *err);
+    uint64_t file_bytes; /* of these files together; 0: there is one file */
 } cwi_irregular;
 
 /* Computes the numbers of points and cells of a curvilinear grid. field: its name in the file.

@@ -63,7 +63,8 @@ static cw_status expect_memory(int bits, cw_error *err)
 }
 
 static cw_status verify_decoded(const cw_mesh *mesh, const float *texture,
-                                const cwi_quantization_grid *grid, const cwi_arrays *a, double *normal_degrees, cw_error *err)
+                                const cwi_quantization_grid *grid, const cwi_arrays *a,
+                                double *normal_degrees, cw_error *err)
 {
     const cwi_decoded decoded = {.vertex_count = a->vertex_count,
                                  .triangle_count = a->triangle_count,

@@ -245,11 +245,10 @@ cw_status copy_mesh(const draco::Mesh &mesh, const cwi_draco_ids &ids,
     const draco::PointAttribute *positions = find(mesh, ids.position, 3),
                                 *normals = find(mesh, ids.normal, 3),
                                 *colors = find(mesh, ids.color, 3),
-                               *texture = find(mesh, ids.texture, 2);
+                                *texture = find(mesh, ids.texture, 2);
     const size_t count = mesh.num_points();
     if (!positions || (ids.normal >= 0 && !normals) || (ids.color >= 0 && !colors) ||
-        (ids.texture >= 0 && !texture) ||
-        (colors && colors->num_components() > 4))
+        (ids.texture >= 0 && !texture) || (colors && colors->num_components() > 4))
         return cwi_fail(err, CW_ERR_FORMAT, "the Draco data lack an attribute that is named");
     if (grid && !is_on_grid(*positions, *grid))
         return cwi_fail(err, CW_ERR_CHECK,

@@ -135,12 +135,14 @@ static cw_status compare_texture(const cw_mesh *mesh, const cwi_decoded *d, cons
     for (size_t v = 0; v < d->vertex_count && st == CW_OK; v++) {
         bool found = false;
         for (uint32_t w = first[map[count + v]]; w != UINT32_MAX && !found; w = next[w])
-            found = fabs((double)d->texture[2 * v] - (double)d->texture_encoded[2 * (size_t)w]) <= step &&
+            found = fabs((double)d->texture[2 * v] -
+                         (double)d->texture_encoded[2 * (size_t)w]) <= step &&
                     fabs((double)d->texture[2 * v + 1] -
                          (double)d->texture_encoded[2 * (size_t)w + 1]) <= step;
         if (!found)
             st = cwi_fail(err, CW_ERR_CHECK,
-                          "the texture coordinate of decoded vertex %zu is not the one encoded", v);
+                          "the texture coordinate of decoded vertex %zu is not the one encoded",
+                          v);
     }
     cwi_free(first);
     cwi_free(next);

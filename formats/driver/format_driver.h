@@ -43,15 +43,17 @@ typedef cw_status cwi_split_counter(const cwi_parts *parts, const cw_write_desc 
                                     size_t *added, cw_error *err);
 
 typedef struct cwi_mesh_writing {
-    cwi_mesh_writer *write;              /* NULL: it writes no mesh */
+    const char *extensions; /* extensions that are written; NULL: those of the format */
+    cwi_mesh_writer *write; /* NULL: it writes no mesh */
     cw_status (*prepare)(cw_error *err); /* finds its modules; NULL: nothing to find */
     /* Refuses requests that the format has no place for; NULL: nothing to refuse. */
     cw_status (*check)(const cw_write_desc *desc, cw_error *err);
     /* It writes a folder, and replaces an old one that passes this check; NULL: it writes a
      * file. */
     cwi_folder_check *replaces;
-    bool own_axes;       /* unit and frame are those of the format */
-    bool text;           /* it is text, or can be */
+    bool own_axes; /* unit and frame are those of the format */
+    bool ras_mm;   /* unit and frame are millimetres, right-anterior-superior, and no others */
+    bool text;     /* it is text, or can be */
     unsigned text_lacks; /* properties that its text does not keep: cw_keeps flags */
     int color_bits;      /* of a channel of colours of faces, without opacity; 0: all */
     bool compresses;     /* it has compressed forms */

@@ -26,7 +26,7 @@ tinygltf::Value text(const std::string &words)
 }
 
 const char *const attributes[CWI_GLTF_USES] = {"", "POSITION", "NORMAL", "COLOR_0",
-                                                "TEXCOORD_0"};
+                                               "TEXCOORD_0"};
 
 tinygltf::Value meshopt_extension(const cwi_gltf_array &a)
 {

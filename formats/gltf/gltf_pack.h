@@ -15,8 +15,9 @@ typedef struct cwi_gltf_plan {
     cwi_parts parts; /* as they are written: with one origin and in another order, if the
                         compression needs that */
     cw_mesh *own;    /* the arrays of parts that are copies */
-    cw_mesh *seamed; /* the arrays of parts whose vertices were split at seams of the texture, */
-    cw_mesh *split;  /* and of those split by colour after that */
+    cw_mesh
+        *seamed;    /* the arrays of parts whose vertices were split at seams of the texture, */
+    cw_mesh *split; /* and of those split by colour after that */
     cwi_gltf_piece *pieces;
     cwi_gltf_document document;
     bool rounded;               /* positions are on the grid, and normals are bytes */

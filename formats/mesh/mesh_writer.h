@@ -40,10 +40,10 @@ typedef struct cwi_part {
     uint8_t color[4]; /* all vertices; mesh.colors is then NULL */
     const uint8_t
         *face_colors; /* CW_FACE_COLORS: triangle_count x 4; NULL: none that the file keeps */
-    const cw_attribute
-        *texture; /* CW_TEXTURE_COORDINATES; NULL: none that the file keeps */
-    const uint32_t *places; /* corners: numbers of their texture coordinates, for a writer's own use */
-    uint64_t first_place;   /* as first, of these numbers */
+    const cw_attribute *texture; /* CW_TEXTURE_COORDINATES; NULL: none that the file keeps */
+    const uint32_t
+        *places; /* corners: numbers of their texture coordinates, for a writer's own use */
+    uint64_t first_place; /* as first, of these numbers */
     unsigned arrays; /* that the file holds: those of the mesh and, in a file of one mesh, those
                         that the label stands for; cw_keeps flags */
     char name[CWI_NAME_BYTES]; /* printable UTF-8 on one line */

@@ -153,8 +153,7 @@ static void choose_arrays(cwi_parts *parts, unsigned keeps)
         part->arrays &= keeps & CW_KEEPS_PARTS ? keeps : shared;
         part->face_colors =
             part->arrays & CW_KEEPS_FACE_COLORS ? find_face_colors(&part->mesh) : NULL;
-        part->texture =
-            part->arrays & CW_KEEPS_TEXTURE ? cwi_texture_of(&part->mesh) : NULL;
+        part->texture = part->arrays & CW_KEEPS_TEXTURE ? cwi_texture_of(&part->mesh) : NULL;
         keep_arrays(&part->mesh, part->arrays);
         if (keeps & CW_KEEPS_PARTS && keeps & CW_KEEPS_COLORS)
             choose_color(part);

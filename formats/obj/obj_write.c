@@ -51,7 +51,8 @@ static unsigned char *encode_material(const cwi_part *part, size_t t, unsigned c
 static uint64_t place_of(const cwi_part *part, size_t t, int c)
 {
     const size_t corner = 3 * t + (size_t)c;
-    return part->first_place + (part->places ? part->places[corner] : part->mesh.triangles[corner]);
+    return part->first_place +
+           (part->places ? part->places[corner] : part->mesh.triangles[corner]);
 }
 
 /* Encodes a face. Numbers start at 1, and continue from object to object. */
@@ -166,8 +167,8 @@ static cw_status write_materials(const cwi_parts *parts, cwi_mesh_output *out, c
 }
 
 /* Writes texture coordinates; in OBJ the second one goes up. seams: zeroed if vertices have them */
-static cw_status write_places(const cwi_part *part, const cwi_seams *seams, cwi_mesh_output *out,
-                              cw_error *err)
+static cw_status write_places(const cwi_part *part, const cwi_seams *seams,
+                              cwi_mesh_output *out, cw_error *err)
 {
     unsigned char line[CWI_RECORD_BYTES];
     const float *uv = part->texture->data;
@@ -184,7 +185,8 @@ static cw_status write_places(const cwi_part *part, const cwi_seams *seams, cwi_
     return st;
 }
 
-static cw_status write_faces(cwi_part *part, cwi_mesh_output *out, uint64_t *places, cw_error *err)
+static cw_status write_faces(cwi_part *part, cwi_mesh_output *out, uint64_t *places,
+                             cw_error *err)
 {
     cwi_seams seams = {0};
     const bool has_seams = part->texture && part->texture->on == CW_ON_CORNERS;

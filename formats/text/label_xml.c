@@ -4,7 +4,6 @@
 #include "core/base/status.h"
 #include "core/base/text.h"
 #include "core/volume/label_table.h"
-#include "formats/text/xml.h"
 
 #include <ctype.h>
 #include <math.h>
@@ -27,7 +26,7 @@ bool cwi_label_xml_sniff(const char *text)
     return text[strspn(text, " \t\r\n")] == '<' && strstr(text, "<LabelTable");
 }
 
-static cw_status read_key(cwi_xml *x, const char *text, uint32_t *value, cw_error *err)
+static cw_status read_key(const cwi_xml *x, const char *text, uint32_t *value, cw_error *err)
 {
     const char *s = text ? text : "";
     int64_t number;
@@ -42,7 +41,7 @@ static cw_status read_key(cwi_xml *x, const char *text, uint32_t *value, cw_erro
 
 /* Reads the four attributes of a colour. A missing Alpha means opaque; without one of the
  * others there is no colour. */
-static cw_status read_color(cwi_xml *x, cwi_attributes a, cw_label *label, cw_error *err)
+static cw_status read_color(const cwi_xml *x, cwi_attributes a, cw_label *label, cw_error *err)
 {
     static const char *const names[] = {"Red", "Green", "Blue", "Alpha"};
     label->has_color = true;
@@ -61,13 +60,19 @@ static cw_status read_color(cwi_xml *x, cwi_attributes a, cw_label *label, cw_er
     return CW_OK;
 }
 
+cw_status cwi_label_xml_label(const cwi_xml *x, cwi_attributes a, cw_label *label,
+                              cw_error *err)
+{
+    *label = (cw_label){0};
+    cw_status st = read_key(x, cwi_attribute(a, "Key"), &label->value, err);
+    return st == CW_OK ? read_color(x, a, label, err) : st;
+}
+
 static cw_status start_label(void *user, cwi_xml *x, cwi_attributes a, cw_error *err)
 {
     label_document *d = user;
-    d->label = (cw_label){0};
     d->length = 0;
-    cw_status st = read_key(x, cwi_attribute(a, "Key"), &d->label.value, err);
-    return st == CW_OK ? read_color(x, a, &d->label, err) : st;
+    return cwi_label_xml_label(x, a, &d->label, err);
 }
 
 static cw_status end_label(void *user, cwi_xml *x, cw_error *err)
@@ -142,8 +147,10 @@ static cw_status read_bytes(void *from, void *to, size_t size, size_t *got, cw_e
 cw_status cwi_label_xml_read(const char *bytes, size_t size, cw_label_table *table,
                              cw_error *err)
 {
-    static const cwi_xml_rules rules = {
-        .elements = elements, .element_count = ELEMENT_COUNT, .text = add_text};
+    static const cwi_xml_rules rules = {.elements = elements,
+                                        .element_count = ELEMENT_COUNT,
+                                        .doctype = "GIFTI",
+                                        .text = add_text};
     label_document d = {.next = bytes, .left = size, .table = table};
     cw_status st = cwi_xml_read(&rules, &d, read_bytes, &d, err);
     return st == CW_OK ? cwi_label_table_sort(table, false, err) : st;

@@ -89,7 +89,8 @@ static int find_row(const cwi_xml *x, const char *name)
     const int parent = row_at(x);
     name = local_name(name);
     for (int i = 0; i < x->rules->element_count; i++)
-        if (elements[i].parent == parent && strcmp(elements[i].name, name) == 0)
+        if ((elements[i].parent == parent || (i > 0 && i == parent && i == x->rules->nests)) &&
+            strcmp(elements[i].name, name) == 0)
             return i;
     return OTHER;
 }
@@ -157,7 +158,10 @@ static void XMLCALL on_doctype(void *user, const XML_Char *name, const XML_Char 
                                const XML_Char *public_id, int internal)
 {
     cwi_xml *x = user;
-    (void)name, (void)system, (void)public_id, (void)internal;
+    const char *known = x->rules->doctype;
+    (void)system, (void)public_id;
+    if (known && strcmp(name, known) == 0 && !internal)
+        return;
     if (!is_over(x))
         settle_status(
             x, cwi_fail(x->err, CW_ERR_UNSAFE,

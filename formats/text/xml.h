@@ -27,6 +27,9 @@ typedef struct cwi_xml_rules {
     const cwi_xml_element *elements;
     int element_count;
     uint64_t max_elements; /* of any name; 0: no limit */
+    const char *
+        doctype; /* name of a document type that may be stated, without any content; NULL: none */
+    int nests;   /* row of elements that may hold others of their row; 0: none */
     /* Callbacks: text of the row's element (CWI_XML_ROOT: of another one), possibly in several
      * pieces; a comment; any tag, before its element. NULL: not needed. */
     cw_status (*text)(void *user, int row, const char *text, size_t size, cw_error *err);

@@ -73,6 +73,11 @@ void cwi_vti_close(cwi_vti_file *file);
 CW_NODISCARD cw_status cwi_vti_describe(const cwi_vti *v, const cwi_vti_choice *choice,
                                         const cwi_input *in, cwi_source *src, cw_error *err);
 
+/* Reads the coordinates of a piece of a rectilinear grid, as they are in the file; the caller frees them
+ * also on failure. */
+CW_NODISCARD cw_status cwi_vti_coordinates_load(const cwi_vti *v, const cwi_input *in,
+                                                cw_volume numbers[3], cw_error *err);
+
 /* Returns the array that is the volume. of_cells: set to whether it has values of cells */
 const cwi_vti_array *cwi_vti_chosen(const cwi_vti *v, bool *of_cells);
 

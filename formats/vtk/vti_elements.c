@@ -62,10 +62,6 @@ cw_status cwi_vti_piece(cwi_vti_file *f, cwi_attributes a, cw_error *err)
     if (!pieces)
         return cwi_fail_memory(err);
     f->pieces = pieces;
-    if (f->count && f->common.rectilinear)
-        return cwi_fail(
-            err, CW_ERR_FORMAT,
-            "the file has several Piece elements; rectilinear grids of one are read");
     if (f->count)
         f->choice.list = NULL;
     cwi_vti *v = &f->pieces[f->count++];
@@ -102,13 +98,20 @@ static cwi_vti_rank rank_of(const cwi_vti_choice *choice, const cwi_vti_data *da
                                     : CWI_VTI_SEVERAL;
 }
 
+/* Returns true for the array that tells which points or cells are hidden or another piece's. */
+static bool are_marks(const cwi_vti_choice *choice, const char *name)
+{
+    return strncmp(name, "vtkGhost", 8) == 0 &&
+           !(choice->expected && strcmp(choice->expected, name) == 0);
+}
+
 cw_status cwi_vti_data_array(cwi_vti_choice *choice, cwi_vti_data *data, cwi_attributes a,
                              bool *kept, cw_error *err)
 {
     cwi_vti_array array = {0};
     cw_status st = cwi_vtk_xml_array(&array.data, a, err);
     *kept = false;
-    if (st != CW_OK)
+    if (st != CW_OK || are_marks(choice, array.data.name))
         return st;
     const bool is_read = array.data.is_known && array.data.components <= 16;
     array.rank = is_read ? rank_of(choice, data, &array.data) : CWI_VTI_NONE;

@@ -1,14 +1,16 @@
-/* Joins the pieces of VTK's XML image data: of one file (.vti), or of the files that a list names
- * (.pvti). */
+/* Joins the pieces of VTK's XML image data and rectilinear grids: of one file (.vti, .vtr), or of the
+ * files that a list names (.pvti, .pvtr). */
 #include "core/base/memory.h"
 #include "core/base/status.h"
 #include "core/volume/volume.h"
 #include "formats/volume/volume_reader.h"
 #include "formats/vtk/vti.h"
 #include "formats/vtk/vtk_formats.h"
+#include "formats/vtk/vtk_grid.h"
+#include "formats/vtk/vtk_sides.h"
 
+#include <math.h>
 #include <string.h>
-#include <unistd.h>
 
 /* The files of pieces: the file itself, or those that it lists. */
 typedef struct joining {
@@ -17,37 +19,34 @@ typedef struct joining {
     cwi_vti_file list;   /* the file itself */
     cwi_vti_file *files; /* file_count of them: &list, or those of list.sources */
     size_t file_count, piece_count;
+    cwi_vtk_sides sides;       /* the files of a list */
     int64_t low[3];            /* first index of the whole, of points */
     const cwi_vti_array *like; /* the array of the first piece */
     bool of_cells;
-    cw_volume shape; /* of the whole */
-    cw_box box;      /* the wanted part */
-    cw_volume all;   /* the voxels of that */
-    uint8_t *has;    /* a bit a voxel: some piece has it */
+    cw_volume shape;     /* of the whole */
+    cw_box box;          /* the wanted part */
+    cw_volume all;       /* the voxels of that */
+    uint8_t *has;        /* a bit a voxel: some piece has it */
+    double held;         /* voxels of all pieces together */
+    double along[3];     /* points of all pieces together along each axis */
+    cw_volume places[3]; /* coordinates of a rectilinear grid; NaN: of no piece so far */
 } joining;
-
-static const char *name_of(const joining *j, size_t file)
-{
-    return j->list.is_list ? j->list.sources.items[file] : NULL;
-}
 
 /* Calls a file's reader with the file open. */
 static cw_status with_file(joining *j, size_t n,
                            cw_status (*read)(joining *, size_t, const cwi_input *, cw_error *),
                            cw_error *err)
 {
-    const char *name = name_of(j, n);
-    cwi_input side = *j->in;
-    if (!name)
+    const cwi_input *side;
+    if (!j->list.is_list)
         return read(j, n, j->in, err);
-    side.path = name;
-    side.arrays = n == 0 ? j->in->arrays : NULL;
-    cw_status st = cwi_input_open_side(j->in, name, &side.fd, &side.size, err);
+    cw_status st = cwi_vtk_sides_open(&j->sides, n, &side, err);
     if (st != CW_OK)
-        return cwi_fail_in(err, st, name);
-    st = read(j, n, &side, err);
-    close(side.fd);
-    return st == CW_OK ? st : cwi_fail_in(err, st, name);
+        return st;
+    cwi_input in = *side;
+    in.arrays = n == 0 ? j->in->arrays : NULL;
+    st = read(j, n, &in, err);
+    return st == CW_OK ? st : cwi_fail_in(err, st, in.path);
 }
 
 /* --- the pieces --------------------------------------------------------------------------- */
@@ -58,8 +57,9 @@ static cw_status open_listed(joining *j, size_t n, const cwi_input *side, cw_err
     f->choice = (cwi_vti_choice){.expected = j->like ? j->like->data.name : j->in->array,
                                  .list = side->arrays};
     cw_status st = cwi_vti_open(side, f, err);
-    if (st == CW_OK && (f->is_list || f->common.rectilinear))
-        return cwi_fail(err, CW_ERR_FORMAT, "it is no ImageData, as the pieces of a list are");
+    if (st == CW_OK && (f->is_list || f->common.rectilinear != j->list.common.rectilinear))
+        return cwi_fail(err, CW_ERR_FORMAT, "it is no %s, as the pieces of this list are",
+                        j->list.common.rectilinear ? "RectilinearGrid" : "ImageData");
     if (st == CW_OK && !j->like && f->count) {
         const cwi_vti_array *chosen = cwi_vti_chosen(&f->pieces[0], &j->of_cells);
         j->like = *chosen->data.name ? chosen : NULL;
@@ -75,8 +75,9 @@ static cw_status open_files(joining *j, cw_error *err)
         j->file_count = 1;
     } else {
         j->file_count = j->list.sources.count;
+        uint64_t bytes;
         j->files = cwi_alloc_zeroed(j->file_count, sizeof *j->files);
-        st = j->files ? CW_OK : cwi_fail_memory(err);
+        st = j->files ? cwi_vtk_sides_check(&j->sides, &bytes, err) : cwi_fail_memory(err);
         for (size_t n = 0; n < j->file_count && st == CW_OK; n++)
             st = with_file(j, n, open_listed, err);
     }
@@ -111,9 +112,11 @@ static cw_status take_shape(joining *j, size_t n, const cwi_input *in, cw_error 
         const int64_t points = whole[2 * a + 1] - whole[2 * a] + 1;
         j->low[a] = whole[2 * a];
         j->shape.dim[a] = (size_t)(j->of_cells && points > 1 ? points - 1 : points);
-        for (int r = 0; r < 3; r++)
+        for (int r = 0; r < 3 && !j->list.common.rectilinear; r++)
             j->shape.affine[r][3] += j->shape.affine[r][a] * (double)shift;
+        j->shape.coordinates[a] = NULL; /* those of the piece */
     }
+    j->shape.owned_grid = NULL;
     cwi_source_free(&src);
     return st;
 }
@@ -151,6 +154,120 @@ static bool meet_boxes(cw_box *box, const cw_box *other)
         box->count[a] = last - first;
     }
     return true;
+}
+
+/* Checks that a piece fits the whole, and that its file can hold it, before memory is taken. */
+static cw_status check_piece(joining *j, const cwi_vti *piece, const cwi_vti_choice *choice,
+                             const cwi_input *in, cw_error *err)
+{
+    const cw_read_desc head = {.header_only = true, .max_voxels = UINT64_MAX};
+    cwi_source src = {0};
+    cw_volume shape = {0};
+    cw_box box;
+    cw_status st = cwi_vti_describe(piece, choice, in, &src, err);
+    if (st == CW_OK)
+        st = find_box(j, piece, &src.shape, &box, err);
+    if (st == CW_OK)
+        st = cwi_source_load(&src, in, &head, &shape, err);
+    if (st == CW_OK) {
+        j->held += (double)box.count[0] * (double)box.count[1] * (double)box.count[2];
+        for (int a = 0; a < 3; a++)
+            j->along[a] += (double)(piece->extent[2 * a + 1] - piece->extent[2 * a] + 1);
+    }
+    cw_volume_free(&shape);
+    cwi_source_free(&src);
+    return st;
+}
+
+static cw_status check_pieces(joining *j, size_t n, const cwi_input *in, cw_error *err)
+{
+    const cwi_vti_file *f = &j->files[n];
+    cw_status st = CW_OK;
+    for (size_t p = 0; p < f->count && st == CW_OK; p++)
+        st = check_piece(j, &f->pieces[p], &f->choice, in, err);
+    return st;
+}
+
+/* Refuses a whole that is far larger than its pieces, before memory is taken for it. Smaller gaps
+ * get an error that names their place. */
+static cw_status check_sizes(joining *j, cw_error *err)
+{
+    const size_t *dim = j->shape.dim;
+    const double voxels = (double)dim[0] * (double)dim[1] * (double)dim[2];
+    cw_status st = CW_OK;
+    for (size_t n = 0; n < j->file_count && st == CW_OK; n++)
+        st = with_file(j, n, check_pieces, err);
+    if (st == CW_OK && j->held < voxels / 2)
+        return cwi_fail(err, CW_ERR_FORMAT,
+                        "the 'WholeExtent' has %.0f voxels; all pieces together have %.0f",
+                        voxels, j->held);
+    for (int a = 0; a < 3 && st == CW_OK; a++)
+        if (j->along[a] < (double)dim[a])
+            return cwi_fail(err, CW_ERR_FORMAT,
+                            "the 'WholeExtent' has %zu points along %c; all pieces have %.0f",
+                            dim[a], "xyz"[a], j -> along[a]);
+    return st;
+}
+
+/* --- coordinates -------------------------------------------------------------------------- */
+
+/* Puts the coordinates of a piece where they belong among those of the whole. */
+static cw_status put_coordinates(joining *j, const cwi_vti *piece, const cw_volume numbers[3],
+                                 cw_error *err)
+{
+    for (int a = 0; a < 3; a++) {
+        double *to = cw_volume_voxels(&j->places[a]);
+        const int64_t first = piece->extent[2 * a] - j->low[a];
+        for (size_t i = 0; i < numbers[a].dim[0]; i++) {
+            double *at = to + first + (int64_t)i;
+            const double x =
+                cwi_voxel_at(numbers[a].type, cwi_voxel_address(&numbers[a], i, 0, 0));
+            if (!isnan(*at) && *at != x)
+                return cwi_fail(
+                    err, CW_ERR_FORMAT,
+                    "pieces differ: plane %lld along %c is at %g here, at %g before",
+                    (long long)piece->extent[2 * a] + (long long)i, "xyz"[a], x, *at);
+            *at = x;
+        }
+    }
+    return CW_OK;
+}
+
+static cw_status read_coordinates(joining *j, size_t n, const cwi_input *in, cw_error *err)
+{
+    const cwi_vti_file *f = &j->files[n];
+    cw_status st = CW_OK;
+    for (size_t p = 0; p < f->count && st == CW_OK; p++) {
+        cw_volume numbers[3] = {0};
+        st = cwi_vti_coordinates_load(&f->pieces[p], in, numbers, err);
+        if (st == CW_OK)
+            st = put_coordinates(j, &f->pieces[p], numbers, err);
+        for (int a = 0; a < 3; a++)
+            cw_volume_free(&numbers[a]);
+    }
+    return st;
+}
+
+/* Gives the whole the coordinates of its pieces. */
+static cw_status join_coordinates(joining *j, cw_error *err)
+{
+    cw_status st = CW_OK;
+    for (int a = 0; a < 3 && st == CW_OK; a++) {
+        const size_t points = (size_t)(j->list.extent[2 * a + 1] - j->low[a] + 1);
+        const size_t dim[3] = {points, 1, 1};
+        st = cw_volume_alloc(&j->places[a], CW_F64, dim, 1, 1, err);
+        double *at = st == CW_OK ? cw_volume_voxels(&j->places[a]) : NULL;
+        for (size_t i = 0; i < points && at; i++)
+            at[i] = NAN;
+    }
+    for (size_t n = 0; n < j->file_count && st == CW_OK; n++)
+        st = with_file(j, n, read_coordinates, err);
+    for (int a = 0; a < 3 && st == CW_OK; a++)
+        for (size_t i = 0; i < j->places[a].dim[0]; i++)
+            if (isnan(((const double *)j->places[a].data)[i]))
+                return cwi_fail(err, CW_ERR_FORMAT, "no Piece has the plane %lld along %c",
+                                (long long)j->low[a] + (long long)i, "xyz"[a]);
+    return st == CW_OK ? cwi_vtk_grid_give(j->places, j->of_cells, &j->shape, err) : st;
 }
 
 /* --- voxels ------------------------------------------------------------------------------- */
@@ -257,6 +374,7 @@ static cw_status load_whole(joining *j, const size_t step[3], cw_error *err)
         if (__builtin_mul_overflow(bytes, j->box.count[a], &bytes))
             return cwi_fail(err, CW_ERR_LIMIT, "the 'WholeExtent' is beyond memory");
     cw_volume part = *v;
+    part.owned_grid = NULL; /* the coordinates stay those of the shape */
     cw_status st = cwi_volume_shrink(&part, &j->box, err);
     if (st == CW_OK)
         st = cwi_check_limits(&part, bytes, "WholeExtent", j->desc, err);
@@ -264,14 +382,18 @@ static cw_status load_whole(joining *j, const size_t step[3], cw_error *err)
         st = cwi_volume_thin(&part, step, err);
         j->all = part;
         j->all.data = NULL;
-        return st;
+        return st == CW_OK ? cwi_volume_own_coordinates(&j->all, err) : st;
     }
     if (st == CW_OK)
         st = cw_volume_alloc(&j->all, v->type, part.dim, v->components, 1, err);
     if (st != CW_OK)
         return st;
     memcpy(j->all.affine, part.affine, sizeof part.affine);
+    memcpy(j->all.coordinates, part.coordinates, sizeof part.coordinates);
     j->all.slope = 1;
+    st = cwi_volume_own_coordinates(&j->all, err);
+    if (st != CW_OK)
+        return st;
     j->has = cwi_alloc_zeroed(part.dim[0] * part.dim[1] * part.dim[2] / 8 + 1, 1);
     st = j->has ? CW_OK : cwi_fail_memory(err);
     for (size_t n = 0; n < j->file_count && st == CW_OK; n++) {
@@ -298,6 +420,10 @@ static cw_status join_pieces(joining *j, cw_error *err)
     first_piece(j, &file);
     st = with_file(j, file, take_shape, err);
     if (st == CW_OK)
+        st = check_sizes(j, err);
+    if (st == CW_OK && j->list.common.rectilinear)
+        st = join_coordinates(j, err);
+    if (st == CW_OK)
         st = cwi_check_frame(&j->shape, "Direction, Spacing, Origin", err);
     if (st != CW_OK)
         return st;
@@ -319,6 +445,7 @@ cw_status cwi_vti_read_pieces(const cwi_input *in, const cw_read_desc *desc, boo
     *is_grid = false;
     if (!cwi_vti_may_have_pieces(in))
         return CW_OK;
+    j.sides = (cwi_vtk_sides){.list = in, .names = &j.list.sources};
     cw_status st = cwi_vti_open(in, &j.list, err);
     *is_grid = st == CW_OK && (j.list.is_list || j.list.count > 1);
     if (*is_grid)
@@ -332,6 +459,10 @@ cw_status cwi_vti_read_pieces(const cwi_input *in, const cw_read_desc *desc, boo
         cwi_vti_close(&j.files[n]);
     cwi_free(j.list.is_list ? j.files : NULL);
     cwi_vti_close(&j.list);
+    cwi_vtk_sides_close(&j.sides);
+    for (int a = 0; a < 3; a++)
+        cw_volume_free(&j.places[a]);
+    cwi_free(j.shape.owned_grid);
     cw_volume_free(&j.all);
     cwi_free(j.has);
     return st;

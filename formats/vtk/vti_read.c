@@ -1,4 +1,4 @@
-/* Reads VTK's XML image data (.vti) and rectilinear grids (.vtr). The elements are read as a
+/* Reads VTK's XML image data (.vti) and rectilinear grids (.vtr), and lists of them. The elements are read as a
  * stream. The text of arrays only passes through. Reading stops where appended data start,
  * which need not be XML. */
 #include "core/base/memory.h"
@@ -6,6 +6,7 @@
 #include "formats/vtk/vti.h"
 #include "formats/vtk/vtk_formats.h"
 #include "formats/vtk/vtk_grid.h"
+#include "formats/vtk/vtk_sides.h"
 
 #include <string.h>
 
@@ -34,20 +35,22 @@ static cwi_vti *current(void *user)
 
 static cw_status start_file(void *user, cwi_xml *x, cwi_attributes a, cw_error *err)
 {
-    static const char *const kinds[4][2] = {
+    static const char *const kinds[5][2] = {
         {"ImageData", "a volume"},
         {"RectilinearGrid", "a volume"},
         {"PImageData", "a volume in files"},
-        {"ImageData, PImageData, RectilinearGrid (vti), StructuredGrid or UnstructuredGrid (vtu)",
+        {"PRectilinearGrid", "a volume in files"},
+        {"ImageData, RectilinearGrid (vti), StructuredGrid or UnstructuredGrid (vtu), or a list of "
+         "one kind",
          "a volume"}};
     cwi_vti_file *f = ((parsing *)user)->file;
     const char *type = cwi_attribute(a, "type");
     int kind = 0;
     (void)x;
-    while (kind < 3 && !(type && strcmp(type, kinds[kind][0]) == 0))
+    while (kind < 4 && !(type && strcmp(type, kinds[kind][0]) == 0))
         kind++;
-    f->common.rectilinear = kind == 1;
-    f->is_list = kind == 2;
+    f->common.rectilinear = kind == 1 || kind == 3;
+    f->is_list = kind == 2 || kind == 3;
     return cwi_vtk_xml_file(&f->common.file, a, kinds[kind], err);
 }
 
@@ -68,11 +71,8 @@ static cw_status start_piece(void *user, cwi_xml *x, cwi_attributes a, cw_error 
 /* Keeps the file of a piece; its own extent is in there. */
 static cw_status start_list_piece(void *user, cwi_xml *x, cwi_attributes a, cw_error *err)
 {
-    const char *name = cwi_attribute(a, "Source");
     (void)x;
-    if (!name || !*name)
-        return cwi_fail(err, CW_ERR_FORMAT, "a Piece has no 'Source', the file that holds it");
-    return cwi_names_add(&((parsing *)user)->file->sources, name, err);
+    return cwi_vtk_sides_name(&((parsing *)user)->file->sources, "Piece", "Source", a, err);
 }
 
 static cw_status start_points(void *user, cwi_xml *x, cwi_attributes a, cw_error *err)
@@ -150,6 +150,8 @@ typedef enum element {
     E_IMAGE_CELLS,
     E_LIST,
     E_LIST_PIECE,
+    E_GRID_LIST,
+    E_GRID_LIST_PIECE,
     E_GRID,
     E_GRID_PIECE,
     E_GRID_POINTS,
@@ -172,6 +174,8 @@ static const cwi_xml_element elements[ELEMENT_COUNT] = {
     [E_IMAGE_CELLS] = {"CellData", E_IMAGE_PIECE, start_cells, NULL},
     [E_LIST] = {"PImageData", E_FILE, start_image, NULL},
     [E_LIST_PIECE] = {"Piece", E_LIST, start_list_piece, NULL},
+    [E_GRID_LIST] = {"PRectilinearGrid", E_FILE, start_image, NULL},
+    [E_GRID_LIST_PIECE] = {"Piece", E_GRID_LIST, start_list_piece, NULL},
     [E_GRID] = {"RectilinearGrid", E_FILE, start_image, NULL},
     [E_GRID_PIECE] = {"Piece", E_GRID, start_piece, NULL},
     [E_GRID_POINTS] = {"PointData", E_GRID_PIECE, start_points, NULL},
@@ -208,13 +212,13 @@ static cw_status look_at_list(void *user, cwi_xml *x, cwi_attributes a, cw_error
 bool cwi_vti_may_have_pieces(const cwi_input *in)
 {
     static const cwi_xml_element first[] = {
-        {"VTKFile", CWI_XML_ROOT, start_file, NULL},
-        {"ImageData", 0, start_image, NULL},
-        {"Piece", 1, look_at_piece, NULL},
-        {"PImageData", 0, look_at_list, NULL},
+        {"VTKFile", CWI_XML_ROOT, start_file, NULL}, {"ImageData", 0, start_image, NULL},
+        {"Piece", 1, look_at_piece, NULL},           {"PImageData", 0, look_at_list, NULL},
+        {"PRectilinearGrid", 0, look_at_list, NULL}, {"RectilinearGrid", 0, start_image, NULL},
+        {"Piece", 5, look_at_piece, NULL},
     };
     static const cwi_xml_rules looking = {
-        .elements = first, .element_count = 4, .max_elements = 100};
+        .elements = first, .element_count = 7, .max_elements = 100};
     cwi_vti_file file = {0};
     parsing p = {.file = &file};
     const bool is_read = cwi_xml_read_file(&looking, &p, in, NULL) == CW_OK;
@@ -255,10 +259,9 @@ static size_t points_along(const cwi_vti *v, int axis)
     return (size_t)(v->extent[2 * axis + 1] - v->extent[2 * axis] + 1);
 }
 
-static cw_status set_coordinates(const cwi_vti *v, const cwi_input *in, cw_volume *shape,
-                                 cw_error *err)
+static cw_status describe_coordinates(const cwi_vti *v, const cwi_input *in, cwi_source rows[3],
+                                      cw_error *err)
 {
-    cwi_source rows[3];
     cw_status st = CW_OK;
     for (int a = 0; a < 3 && st == CW_OK; a++) {
         const cwi_vtk_array *array = &v->coordinates[a];
@@ -266,6 +269,22 @@ static cw_status set_coordinates(const cwi_vti *v, const cwi_input *in, cw_volum
         if (st == CW_OK)
             st = cwi_vtk_xml_place(&v->file, array, in, &rows[a], err);
     }
+    return st;
+}
+
+cw_status cwi_vti_coordinates_load(const cwi_vti *v, const cwi_input *in, cw_volume numbers[3],
+                                   cw_error *err)
+{
+    cwi_source rows[3];
+    cw_status st = describe_coordinates(v, in, rows, err);
+    return st == CW_OK ? cwi_vtk_grid_load(rows, in, numbers, err) : st;
+}
+
+static cw_status set_coordinates(const cwi_vti *v, const cwi_input *in, cw_volume *shape,
+                                 cw_error *err)
+{
+    cwi_source rows[3];
+    cw_status st = describe_coordinates(v, in, rows, err);
     return st == CW_OK ? cwi_vtk_grid_place(rows, in, is_of_cells(v), shape, err) : st;
 }
 

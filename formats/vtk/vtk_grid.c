@@ -42,8 +42,8 @@ static void to_middles(double *at, size_t count)
         at[i] = 0.5 * at[i] + 0.5 * at[i + 1];
 }
 
-static cw_status take_coordinates(const cw_volume numbers[3], bool of_cells, cw_volume *shape,
-                                  cw_error *err)
+cw_status cwi_vtk_grid_give(const cw_volume numbers[3], bool of_cells, cw_volume *shape,
+                            cw_error *err)
 {
     double *to =
         cwi_alloc_array(numbers[0].dim[0] + numbers[1].dim[0] + numbers[2].dim[0], sizeof *to);
@@ -63,15 +63,22 @@ static cw_status take_coordinates(const cw_volume numbers[3], bool of_cells, cw_
     return st;
 }
 
+cw_status cwi_vtk_grid_load(const cwi_source rows[3], const cwi_input *in, cw_volume numbers[3],
+                            cw_error *err)
+{
+    cw_status st = CW_OK;
+    for (int a = 0; a < 3 && st == CW_OK; a++)
+        st = cwi_source_load(&rows[a], in, &(cw_read_desc){0}, &numbers[a], err);
+    return st;
+}
+
 cw_status cwi_vtk_grid_place(const cwi_source rows[3], const cwi_input *in, bool of_cells,
                              cw_volume *shape, cw_error *err)
 {
     cw_volume numbers[3] = {0};
-    cw_status st = CW_OK;
-    for (int a = 0; a < 3 && st == CW_OK; a++)
-        st = cwi_source_load(&rows[a], in, &(cw_read_desc){0}, &numbers[a], err);
+    cw_status st = cwi_vtk_grid_load(rows, in, numbers, err);
     if (st == CW_OK)
-        st = take_coordinates(numbers, of_cells, shape, err);
+        st = cwi_vtk_grid_give(numbers, of_cells, shape, err);
     for (int a = 0; a < 3; a++)
         cw_volume_free(&numbers[a]);
     return st;

@@ -1,11 +1,14 @@
-/* Reads VTK's XML unstructured grids (.vtu) and curvilinear ones (.vts). The elements are read
- * as a stream, like those of .vti; then the arrays, by the common reader of irregular grids. */
+/* Reads VTK's XML unstructured grids (.vtu) and curvilinear ones (.vts), and lists of such files
+ * (.pvtu, .pvts). The elements are read as a stream, like those of .vti; then the arrays, by the
+ * common reader of irregular grids. */
 #define _GNU_SOURCE /* memmem */
 #include "core/base/memory.h"
 #include "core/base/status.h"
 #include "formats/cells/irregular_grid.h"
+#include "formats/volume/volume_reader.h"
 #include "formats/vtk/vti.h"
 #include "formats/vtk/vtk_formats.h"
+#include "formats/vtk/vtk_sides.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -14,15 +17,22 @@ enum { MAX_ELEMENTS = 100000 };
 
 /* The content of a Piece. */
 typedef struct piece {
+    cwi_vtk_xml file;                          /* of the file that holds it */
+    size_t side;                               /* number of that file in a list */
     cwi_vtk_array arrays[CWI_GRID_ROLE_COUNT]; /* all but the values */
     bool has[CWI_GRID_ROLE_COUNT];
     cwi_vti_data points, cells;
 } piece;
 
 typedef struct parsing {
-    cwi_vtk_xml file;
+    cwi_vtk_xml file; /* the one that is parsed */
     const cwi_input *in;
     bool curvilinear;
+    bool is_list, is_side; /* the parsed file lists others; is one of a list */
+    bool has_kind;         /* a file before has stated whether they are curvilinear */
+    cwi_names names;       /* of the files in the list */
+    cwi_vtk_sides *sides;  /* those files; NULL: there is no list */
+    uint64_t side_bytes;
     cwi_vti_choice choice;
     cwi_grid_piece *grid;
     piece *pieces; /* count of them */
@@ -45,8 +55,9 @@ static const char *cell_field(const parsing *p)
 bool cwi_vtu_sniff(const unsigned char *head, size_t size)
 {
     static const char tag[] = "<VTKFile";
-    static const char *const kinds[] = {"\"UnstructuredGrid", "\"StructuredGrid",
-                                        "'UnstructuredGrid", "'StructuredGrid"};
+    static const char *const kinds[] = {
+        "\"UnstructuredGrid", "\"PUnstructuredGrid", "'UnstructuredGrid", "'PUnstructuredGrid",
+        "\"StructuredGrid",   "\"PStructuredGrid",   "'StructuredGrid",   "'PStructuredGrid"};
     const char *text = memmem(head, size, tag, sizeof tag - 1);
     const char *end =
         text ? memchr(text, '>', size - (size_t)(text - (const char *)head)) : NULL;
@@ -60,19 +71,35 @@ bool cwi_vtu_sniff(const unsigned char *head, size_t size)
 
 static cw_status start_file(void *user, cwi_xml *x, cwi_attributes a, cw_error *err)
 {
-    static const char *const kinds[2][2] = {{"UnstructuredGrid", "of cells that need no order"},
-                                            {"StructuredGrid", "of cells in rows"}};
+    static const char *const kinds[4][2] = {
+        {"UnstructuredGrid", "of cells that need no order"},
+        {"StructuredGrid", "of cells in rows"},
+        {"PUnstructuredGrid", "a list of grids"},
+        {"PStructuredGrid", "a list of grids"},
+    };
     parsing *p = user;
     const char *type = cwi_attribute(a, "type");
+    int kind = p->curvilinear;
     (void)x;
-    p->curvilinear = type && strcmp(type, kinds[1][0]) == 0;
-    return cwi_vtk_xml_file(&p->file, a, kinds[p->curvilinear], err);
+    for (int k = 0; k < (p->is_side ? 2 : 4) && type && !p->has_kind; k++)
+        if (strcmp(type, kinds[k][0]) == 0)
+            kind = k;
+    p->curvilinear = kind % 2;
+    p->has_kind = true;
+    p->is_list = kind >= 2;
+    return cwi_vtk_xml_file(&p->file, a, kinds[kind], err);
 }
 
 static cw_status start_grid(void *user, cwi_xml *x, cwi_attributes a, cw_error *err)
 {
     (void)user, (void)x;
     return cwi_vti_check_times(a, err);
+}
+
+static cw_status start_list_piece(void *user, cwi_xml *x, cwi_attributes a, cw_error *err)
+{
+    (void)x;
+    return cwi_vtk_sides_name(&((parsing *)user)->names, "Piece", "Source", a, err);
 }
 
 static cw_status grow_pieces(parsing *p, cw_error *err)
@@ -94,8 +121,10 @@ static cw_status set_extent(cwi_grid_piece *g, cwi_attributes a, cw_error *err)
 {
     int64_t extent[6];
     cw_status st = cwi_vti_extent(a, "Extent", extent, err);
-    for (int i = 0; i < 3 && st == CW_OK; i++)
+    for (int i = 0; i < 3 && st == CW_OK; i++) {
         g->along[i] = (size_t)(extent[2 * i + 1] - extent[2 * i] + 1);
+        g->low[i] = extent[2 * i];
+    }
     return st == CW_OK ? cwi_grid_along(g, "Extent", err) : st;
 }
 
@@ -181,7 +210,10 @@ static cw_status start_data_array(parsing *p, cwi_xml *x, cwi_attributes a, cwi_
                                   cwi_grid_role marks, cw_error *err)
 {
     bool kept;
-    if (is_named(a, "vtkGhostType"))
+    const bool levels = is_named(a, "vtkGhostLevels"); /* before VTK 7 */
+    if (levels && data->of_cells && !at_hand(p)->has[marks])
+        p->grid[p->count - 1].marks_are_levels = true;
+    if (is_named(a, "vtkGhostType") || (levels && data->of_cells))
         return keep_array(p, x, a, marks, 1, err);
     cw_status st = cwi_vti_data_array(&p->choice, data, a, &kept, err);
     if (kept)
@@ -254,6 +286,10 @@ enum {
     UNSTRUCTURED = CURVILINEAR + GRID_ROWS,
     CELLS = UNSTRUCTURED + GRID_ROWS,
     CELLS_ARRAY,
+    LIST,
+    LIST_PIECE,
+    CURVILINEAR_LIST,
+    CURVILINEAR_LIST_PIECE,
     APPENDED,
     ELEMENT_COUNT
 };
@@ -274,6 +310,10 @@ static const cwi_xml_element elements[ELEMENT_COUNT] = {
     GRID_ELEMENTS(UNSTRUCTURED, "UnstructuredGrid"),
     [CELLS] = {"Cells", UNSTRUCTURED + PIECE, NULL, NULL},
     [CELLS_ARRAY] = {"DataArray", CELLS, start_cells, NULL},
+    [LIST] = {"PUnstructuredGrid", FILE_ROW, NULL, NULL},
+    [LIST_PIECE] = {"Piece", LIST, start_list_piece, NULL},
+    [CURVILINEAR_LIST] = {"PStructuredGrid", FILE_ROW, NULL, NULL},
+    [CURVILINEAR_LIST_PIECE] = {"Piece", CURVILINEAR_LIST, start_list_piece, NULL},
     [APPENDED] = {"AppendedData", FILE_ROW, start_appended, NULL},
 };
 
@@ -332,6 +372,7 @@ static cw_status describe_array(const void *file, size_t n, cwi_grid_role role, 
     const bool values = role == CWI_GRID_VALUES;
     const bool of_points =
         role == CWI_GRID_POINTS || role == CWI_GRID_POINT_MARKS || (values && !p->of_cells);
+    const cwi_input *in = p->sides ? &p->sides->now : p->in;
     const cwi_vtk_array *array = values            ? &values_of(p, n)->data
                                  : from->has[role] ? &from->arrays[role]
                                                    : NULL;
@@ -339,8 +380,14 @@ static cw_status describe_array(const void *file, size_t n, cwi_grid_role role, 
                         : of_points              ? point_field(p)
                                                  : cell_field(p);
     *wide = false;
-    return values ? cwi_vtk_xml_values(&p->file, array, field, count, p->in, src, err)
-                  : cwi_vtk_xml_tuples(&p->file, array, field, count, p->in, src, wide, err);
+    return values ? cwi_vtk_xml_values(&from->file, array, field, count, in, src, err)
+                  : cwi_vtk_xml_tuples(&from->file, array, field, count, in, src, wide, err);
+}
+
+static cw_status open_side(const void *file, size_t n, const cwi_input **in, cw_error *err)
+{
+    const parsing *p = file;
+    return cwi_vtk_sides_open(p->sides, p->pieces[n].side, in, err);
 }
 
 static cw_status read_grid(parsing *p, const cw_read_desc *desc, cw_volume *volume,
@@ -359,26 +406,92 @@ static cw_status read_grid(parsing *p, const cw_read_desc *desc, cw_volume *volu
                                 .components = values->components,
                                 .of_cells = p->of_cells,
                                 .describe = describe_array,
-                                .file = p};
+                                .file = p,
+                                .open = p->sides ? open_side : NULL,
+                                .file_bytes = p->side_bytes};
     return cwi_irregular_read(&grid, p->in, desc, volume, err);
+}
+
+/* Reads the elements of one file; side: its number in a list. */
+static cw_status parse_file(parsing *p, const cwi_input *in, size_t side, cw_error *err)
+{
+    const size_t first = p->count;
+    p->file = (cwi_vtk_xml){0};
+    cw_status st = cwi_xml_read_file(&rules, p, in, err);
+    if (st == CW_OK)
+        st = cwi_vtk_xml_find_appended(in, &p->file, err);
+    for (size_t n = first; n < p->count; n++) {
+        p->pieces[n].file = p->file; /* the place of appended data comes last */
+        p->pieces[n].side = side;
+    }
+    return st;
+}
+
+static cw_status parse_sides(parsing *p, cw_error *err)
+{
+    cw_status st = cwi_vtk_sides_check(p->sides, &p->side_bytes, err);
+    p->is_side = true;
+    for (size_t n = 0; n < p->sides->names->count && st == CW_OK; n++) {
+        const cwi_input *side;
+        st = cwi_vtk_sides_open(p->sides, n, &side, err);
+        if (st == CW_OK) {
+            st = parse_file(p, side, n, err);
+            st = st == CW_OK ? st : cwi_fail_in(err, st, side->path);
+        }
+    }
+    return st;
+}
+
+/* Reads the grid of all parsed pieces. */
+static cw_status read_pieces(parsing *p, const cw_read_desc *desc, cw_volume *volume,
+                             cw_error *err)
+{
+    drop_empty(p);
+    cw_status st = choose_array(p, err);
+    if (st != CW_OK)
+        return st;
+    cwi_array_list_choose(p->in->arrays, values_of(p, 0)->data.name, p->of_cells);
+    st = read_grid(p, desc, volume, err);
+    if (st == CW_OK && p->sides && p->sides->names->count > 1)
+        cwi_note(desc, "%zu files are joined", p->sides->names->count);
+    return st;
+}
+
+static void free_pieces(parsing *p)
+{
+    cwi_names_free(&p->names);
+    cwi_free(p->pieces);
+    cwi_free(p->grid);
+}
+
+cw_status cwi_vtu_read_sides(const cwi_input *list, const cwi_names *files,
+                             const cw_read_desc *desc, cw_volume *volume, cw_error *err)
+{
+    cwi_vtk_sides sides = {.list = list, .names = files};
+    parsing p = {
+        .in = list, .sides = &sides, .choice = {.expected = list->array, .list = list->arrays}};
+    cw_status st = parse_sides(&p, err);
+    if (st == CW_OK)
+        st = read_pieces(&p, desc, volume, err);
+    cwi_vtk_sides_close(&sides);
+    free_pieces(&p);
+    return st;
 }
 
 cw_status cwi_vtu_read(const cwi_input *in, const cw_read_desc *desc, bool *is_grid,
                        cw_volume *volume, cw_error *err)
 {
     parsing p = {.in = in, .choice = {.expected = in->array, .list = in->arrays}};
+    cwi_vtk_sides sides = {.list = in, .names = &p.names};
     *is_grid = true;
-    cw_status st = cwi_xml_read_file(&rules, &p, in, err);
-    if (st == CW_OK)
-        st = cwi_vtk_xml_find_appended(in, &p.file, err);
-    drop_empty(&p);
-    if (st == CW_OK)
-        st = choose_array(&p, err);
-    if (st == CW_OK) {
-        cwi_array_list_choose(in->arrays, values_of(&p, 0)->data.name, p.of_cells);
-        st = read_grid(&p, desc, volume, err);
+    cw_status st = parse_file(&p, in, 0, err);
+    if (st == CW_OK && p.is_list) {
+        p.sides = &sides;
+        st = parse_sides(&p, err);
     }
-    cwi_free(p.pieces);
-    cwi_free(p.grid);
+    if (st == CW_OK)
+        st = read_pieces(&p, desc, volume, err);
+    cwi_vtk_sides_close(&sides);
+    free_pieces(&p);
     return st;
 }

@@ -394,6 +394,15 @@ typedef struct cw_mesh_file {
 
     size_t invisible;          /* meshes of glTF that KHR_node_visibility hides: left out */
     char invisible_names[160]; /* of those nodes; "..." where there is no room for all */
+
+    size_t pieces; /* of VTK's files in pieces: those that were joined; 0: there is one */
+    size_t merged_vertices; /* vertices on seams of pieces that are one with others */
+    size_t
+        marked_cells; /* cells of VTK left out, as another piece has them or they are hidden */
+
+    /* Of GIfTI and FreeSurfer: the file's own transform to the frame of the scanner, which was applied,
+     * such as "c_ras: a shift by (1, 2, 3) mm, RAS"; "": none. */
+    char placed[128];
 } cw_mesh_file;
 
 /* Reads a mesh: all parts of the file, merged, in LPS millimetres.
@@ -419,6 +428,10 @@ typedef struct cw_mesh_file {
  * reversed, so that triangles stay counter-clockwise from outside. Animations are
  * ignored, and images are never read. A node with a scale of 0 along all axes is hidden, as are one that
  * KHR_node_visibility hides and its children, and left out.
+ *
+ * Files of VTK in pieces (.pvtp) are joined: their seams are closed where vertices are at the same place to
+ * the bit. GIfTI and FreeSurfer's surfaces are in RAS millimetres; the transform that they state to the
+ * frame of the scanner is applied.
  *
  * From 3MF all objects of the build are placed, with components, in the unit that the file
  * names. A mirrored object also has its winding reversed.
@@ -466,7 +479,7 @@ typedef struct cw_part {
 } cw_part;
 
 /* Reads the parts of a file, each as a mesh. Parts are the objects of OBJ, or its groups if it
- * has no objects; the solids of an STL text; the build items of 3MF; the nodes of glTF. Groups
+ * has no objects; the solids of an STL text; the build items of 3MF; the nodes of glTF; the blocks of VTM. Groups
  * that share vertices are one part, so that none is cut from its neighbours. If there are
  * several parts, vertices that no triangle names are left out. Other formats, and files without
  * parts, give one part.
@@ -555,7 +568,7 @@ typedef struct cw_write_desc {
 CW_NODISCARD CW_API cw_status cw_volume_write(const char *path, const cw_volume *volume,
                                               const cw_write_desc *desc, cw_error *err);
 
-/* Writes a mesh in the same way: .glb, .gltf, .stl, .ply, .obj, .off, .3mf or .vtp; or a folder
+/* Writes a mesh in the same way: .glb, .gltf, .stl, .ply, .obj, .off, .3mf, .vtp or .gii; or a folder
  * of the format "neuroglancer", see cw_parts_write(). glTF is written in metres, +Y up and facing +Z, by the node's transform, so vertices stay exact. They
  * stay exact in 3MF, too, whose build items hold the origin. The other formats hold world
  * coordinates (origin added), LPS millimetres: see cw_mesh_write_loss().

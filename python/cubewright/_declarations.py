@@ -250,7 +250,8 @@ class cw_keeps(enum.IntEnum):
     CW_KEEPS_ATTRIBUTES = 256
     CW_KEEPS_FACE_COLORS = 512
     CW_KEEPS_OPACITY = 1024
-    CW_KEEPS_ALL = 2047
+    CW_KEEPS_TEXTURE = 2048
+    CW_KEEPS_ALL = 4095
 
 
 class cw_mode(enum.IntEnum):
@@ -1898,6 +1899,10 @@ class cw_mesh_file(Structure):
     modifier_triangles: int
     invisible: int
     invisible_names: Any
+    pieces: int
+    merged_vertices: int
+    marked_cells: int
+    placed: Any
 
 
 cw_mesh_file._fields_ = [
@@ -1925,6 +1930,10 @@ cw_mesh_file._fields_ = [
     ("modifier_triangles", c_size_t),
     ("invisible", c_size_t),
     ("invisible_names", c_char * 160),
+    ("pieces", c_size_t),
+    ("merged_vertices", c_size_t),
+    ("marked_cells", c_size_t),
+    ("placed", c_char * 128),
 ]
 
 

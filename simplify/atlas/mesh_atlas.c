@@ -229,9 +229,9 @@ static cw_status pack_and_set(cw_mesh *mesh, const charting *c, const cw_atlas_d
                               cw_atlas_facts *facts, cw_error *err)
 {
     cwi_atlas_packing packing = {.size = d->size,
-                           .margin = d->margin,
-                           .density = d->texels_per_mm,
-                           .threads = d->threads};
+                                 .margin = d->margin,
+                                 .density = d->texels_per_mm,
+                                 .threads = d->threads};
     float(*uv)[2] = NULL;
     packing.places = cwi_alloc_array(c->chart_count, sizeof *packing.places);
     cw_status st = packing.places ? CW_OK : cwi_fail_memory(err);

@@ -88,7 +88,8 @@ ask_vtk() {
         "steps/0000.vtp@0 1;steps/0001.vtp@0.25 1;steps/0002.vtp@0.5 1;"
     # and what VTK writes, in all its dialects
     $python "$here/vtk_meshes.py" --write x.stl theirs || failed=1
-    for f in theirs/*; do
+    for f in theirs/*.*; do
+        case $f in *_*) continue ;; esac # a piece of a list beside it
         cubewright check "$f" --json r.json -q >/dev/null 2>&1
         expect "$f" "$(sed -n 's/^    "triangles": \([0-9]*\),$/\1/p' r.json)" "$triangles"
         rm -f r.json

@@ -57,6 +57,23 @@ def write_dialects(mesh, folder):
             writer.SetEncodeAppendedData(n // 36 % 2)
             writer.SetFileName("%s/%s%02d.vtp" % (folder, kind, n))
             writer.Write()
+    for ghosts in range(2):
+        pieces = vtk.vtkExtractPolyDataPiece()
+        pieces.SetInputData(mesh)
+        pieces.SetCreateGhostCells(ghosts)
+        writer = vtk.vtkXMLPPolyDataWriter()
+        writer.SetInputConnection(pieces.GetOutputPort())
+        writer.SetNumberOfPieces(3)
+        writer.SetEndPiece(2)
+        writer.SetGhostLevel(ghosts)
+        writer.SetFileName("%s/pieces%d.pvtp" % (folder, ghosts))
+        writer.Write()
+    blocks = vtk.vtkMultiBlockDataSet()
+    blocks.SetBlock(1, mesh)
+    writer = vtk.vtkXMLMultiBlockDataWriter()
+    writer.SetInputData(blocks)
+    writer.SetFileName(folder + "/blocks.vtm")
+    writer.Write()
     for name, writer, binary in (("text.ply", vtk.vtkPLYWriter(), False),
                                  ("binary.ply", vtk.vtkPLYWriter(), True),
                                  ("text.stl", vtk.vtkSTLWriter(), False),

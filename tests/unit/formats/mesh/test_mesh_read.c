@@ -67,7 +67,8 @@ static const cw_format *written(size_t n, const char **name)
     for (size_t i = 0; i < count; i++)
         if (formats[i].writes_mesh && formats[i].reads_mesh && formats[i].in_this_build &&
             strcmp(formats[i].name, "drc") != 0 && n-- == 0) {
-            snprintf(names[i % 16], sizeof *names, "a%s", formats[i].extensions);
+            snprintf(names[i % 16], sizeof *names, "a%.*s",
+                     (int)strcspn(formats[i].extensions, " "), formats[i].extensions);
             *name = names[i % 16];
             return &formats[i];
         }

@@ -214,7 +214,7 @@ static void damaged_files_are_told_where(void **state)
         {"<VTKFile", "line 1 is not XML"},
         {"<html><VTKFile></html>", "the first element is not VTKFile"},
         {"<VTKFile type='Table'>", "the VTK file is 'Table'; only ImageData"},
-        {"<VTKFile type='PUnstructuredGrid'>", "the VTK file is 'PUnstructuredGrid'"},
+        {"<VTKFile type='PTable'/>", "the VTK file is 'PTable'"},
         {"<VTKFile>", "the VTK file is ''"},
         {"<VTKFile type='ImageData' byte_order='Middle'>", "'byte_order' is 'Middle'"},
         {"<VTKFile type='ImageData' header_type='UInt16'>", "'header_type' is 'UInt16'"},
@@ -526,8 +526,8 @@ static void pieces_that_do_not_fit_are_told(void **state)
         {"<VTKFile type='PImageData'><PImageData WholeExtent='0 1 0 1 0 1'><Piece "
          "Source='../a.vti'/></PImageData></VTKFile>",
          "a path with '..'"},
-        {"<VTKFile type='PRectilinearGrid'/>", "a list of other files"},
-        {"<VTKFile type='vtkMultiBlockDataSet'/>", "a list of other files"},
+        {"<VTKFile type='PRectilinearGrid'/>", "'WholeExtent' does not state"},
+        {"<VTKFile type='vtkHierarchicalBoxDataSet'/>", "a list of other files"},
     };
     for (size_t n = 0; n < sizeof lists / sizeof *lists; n++) {
         put_file("l.pvti", lists[n].text, NULL, 0);

@@ -138,8 +138,8 @@ static void damaged_files_are_told_where(void **state)
          "Extent='0 2147483646 0 1 0 1'>" POINTS COORDINATES FILE_END,
          "'Extent' asks for"},
         {"<VTKFile type='Table'/>",
-         "only ImageData, PImageData, RectilinearGrid (vti), StructuredGrid or "
-         "UnstructuredGrid (vtu) is a volume"},
+         "only ImageData, RectilinearGrid (vti), StructuredGrid or UnstructuredGrid (vtu), or a "
+         "list of one kind is a volume"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         put(cases[i].text);

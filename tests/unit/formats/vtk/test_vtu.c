@@ -330,9 +330,8 @@ static void marked_cells_are_left_out(void **state)
     check_grid(&v);
     assert_int_equal(v.cells->count, 2);
     assert_cell(&v, 1, CW_TETRAHEDRON, 4, (const uint32_t[]){1, 0, 3, 2});
-    assert_string_equal(
-        notes,
-        "left out, as they are hidden or another piece's (vtkGhostType): 2 of 4 cells\n");
+    assert_string_equal(notes,
+                        "left out, as they are hidden or another piece's: 2 of 4 cells\n");
     cw_volume_free(&v);
     put(FILE_START PIECE(4, 1) VALUES_ABOVE CELL_DATA(ARRAY("UInt8", "vtkGhostType", "", "32"))
             PLACES(ABOVE) ONE_CELL "</Piece>" FILE_END);

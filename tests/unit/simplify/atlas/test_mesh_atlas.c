@@ -25,7 +25,7 @@ static const float (*coordinates_of(const cw_mesh *mesh))[2]
 static double area_of(const float (*uv)[2])
 {
     return -((double)(uv[1][0] - uv[0][0]) * (double)(uv[2][1] - uv[0][1]) -
-            (double)(uv[1][1] - uv[0][1]) * (double)(uv[2][0] - uv[0][0])) /
+             (double)(uv[1][1] - uv[0][1]) * (double)(uv[2][0] - uv[0][0])) /
            2;
 }
 
