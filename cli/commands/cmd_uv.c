@@ -53,6 +53,8 @@ static void put_params(cli_json *j, const cli_mesh_run *r, const cli_made *made)
     const uv_args *args = args_of(r);
     cli_json_count(j, "atlas", args->atlas);
     cli_json_count(j, "margin", args->margin);
+    if (args->density.given)
+        cli_json_number(j, "texels_per_mm", args->density.value);
     cli_json_bool(j, "merge", r->args->merge);
     cli_json_bool(j, "orient", r->args->orient);
     cli_json_count(j, "merged_vertices", r->pieces.merged);

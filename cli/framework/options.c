@@ -59,7 +59,7 @@ const char *cli_nearest(const char *word, const char *const *names)
     for (; *names; names++) {
         const bool begins = strlen(word) >= 2 && strncmp(word, *names, strlen(word)) == 0;
         const size_t d = begins ? 0 : edit_distance(word, *names);
-        if (d < best || (d == best && !nearest)) {
+        if ((d < best || (d == best && !nearest)) && d < strlen(*names)) {
             best = d;
             nearest = *names;
         }

@@ -35,7 +35,8 @@ static int compare_corners(const void *a, const void *b)
 }
 
 /* Numbers the places of a vertex; the one that comes first has the vertex's number. */
-static void number_places(cwi_seams *s, uint32_t v, placed_corner *corners, size_t count)
+static void number_places(cwi_texture_seams *s, uint32_t v, placed_corner *corners,
+                          size_t count)
 {
     bool differ = false;
     for (size_t n = 1; n < count && !differ; n++)
@@ -55,7 +56,7 @@ static void number_places(cwi_seams *s, uint32_t v, placed_corner *corners, size
 }
 
 /* Sets the numbers of all corners. Returns false when memory is out. */
-static bool number_corners(cwi_seams *s, const cw_mesh *m, const float (*uv)[2])
+static bool number_corners(cwi_texture_seams *s, const cw_mesh *m, const float (*uv)[2])
 {
     const size_t corners = 3 * m->triangle_count;
     uint32_t *first = cwi_alloc_array(m->vertex_count + 2, sizeof *first);
@@ -90,30 +91,30 @@ const cw_attribute *cwi_texture_of(const cw_mesh *mesh)
                : NULL;
 }
 
-cw_status cwi_seams_find(const cw_mesh *mesh, cwi_seams *seams, cw_error *err)
+cw_status cwi_seams_find(const cw_mesh *mesh, cwi_texture_seams *seams, cw_error *err)
 {
     const size_t corners = 3 * mesh->triangle_count, most = mesh->vertex_count + corners;
-    *seams = (cwi_seams){.number = cwi_alloc_array(corners, sizeof *seams->number),
-                         .vertex = cwi_alloc_array(most, sizeof *seams->vertex),
-                         .corner = cwi_alloc_array(most, sizeof *seams->corner)};
+    *seams = (cwi_texture_seams){.number = cwi_alloc_array(corners, sizeof *seams->number),
+                                 .vertex = cwi_alloc_array(most, sizeof *seams->vertex),
+                                 .corner = cwi_alloc_array(most, sizeof *seams->corner)};
     return seams->number && seams->vertex && seams->corner &&
                    number_corners(seams, mesh, cwi_texture_of(mesh)->data)
                ? CW_OK
                : cwi_fail_memory(err);
 }
 
-void cwi_seams_free(cwi_seams *seams)
+void cwi_seams_free(cwi_texture_seams *seams)
 {
     cwi_free(seams->number);
     cwi_free(seams->vertex);
     cwi_free(seams->corner);
-    *seams = (cwi_seams){0};
+    *seams = (cwi_texture_seams){0};
 }
 
 /* --- copies with one coordinate a vertex ----------------------------------------------------- */
 
 /* Copies all but texture coordinates. like: the mesh without them */
-static cw_status copy_mesh(const cwi_seams *s, const cw_mesh *like, cw_mesh *copy,
+static cw_status copy_mesh(const cwi_texture_seams *s, const cw_mesh *like, cw_mesh *copy,
                            cw_error *err)
 {
     cw_status st = cwi_mesh_alloc(copy, s->count, like->triangle_count, false, err);
@@ -134,7 +135,7 @@ static cw_status copy_mesh(const cwi_seams *s, const cw_mesh *like, cw_mesh *cop
     return CW_OK;
 }
 
-static cw_status copy_coordinates(const cwi_seams *s, const float *uv, cw_mesh *copy,
+static cw_status copy_coordinates(const cwi_texture_seams *s, const float *uv, cw_mesh *copy,
                                   cw_error *err)
 {
     const cw_attribute like = {.name = CW_TEXTURE_COORDINATES,
@@ -153,7 +154,7 @@ static cw_status copy_coordinates(const cwi_seams *s, const float *uv, cw_mesh *
 cw_status cwi_split_seams(const cw_mesh *mesh, cw_mesh *copy, cw_error *err)
 {
     const cw_attribute *uv = cwi_texture_of(mesh);
-    cwi_seams seams;
+    cwi_texture_seams seams;
     cw_mesh like = *mesh; /* the same arrays, but for texture coordinates */
     *copy = (cw_mesh){0};
     cw_status st = cwi_seams_find(mesh, &seams, err);

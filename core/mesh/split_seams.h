@@ -9,20 +9,21 @@ extern "C" {
 #endif
 
 /* Places in the texture: corners at one vertex with one texture coordinate have one number. */
-typedef struct cwi_seams {
+typedef struct cwi_texture_seams {
     uint32_t *number; /* corners */
     uint32_t *vertex; /* numbers: the vertex; those below the number of vertices are vertices */
     uint32_t *corner; /* numbers: one of their corners; CWI_NO_CORNER: none */
     size_t count;     /* numbers */
-} cwi_seams;
+} cwi_texture_seams;
 
 /* Returns the texture coordinates of a mesh: two floats for each corner, or for each vertex; NULL: none. */
 const cw_attribute *cwi_texture_of(const cw_mesh *mesh);
 
 /* Numbers the places of a mesh with texture coordinates for each corner.
  * Returns  CW_ERR_NO_MEMORY; free with cwi_seams_free() in any case */
-CW_NODISCARD cw_status cwi_seams_find(const cw_mesh *mesh, cwi_seams *seams, cw_error *err);
-void cwi_seams_free(cwi_seams *seams);
+CW_NODISCARD cw_status cwi_seams_find(const cw_mesh *mesh, cwi_texture_seams *seams,
+                                      cw_error *err);
+void cwi_seams_free(cwi_texture_seams *seams);
 
 /* Makes a copy of such a mesh in which each vertex has one texture coordinate. Triangles keep their order.
  * Returns  CW_ERR_NO_MEMORY; free the copy in any case */

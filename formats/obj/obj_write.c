@@ -167,7 +167,7 @@ static cw_status write_materials(const cwi_parts *parts, cwi_mesh_output *out, c
 }
 
 /* Writes texture coordinates; in OBJ the second one goes up. seams: zeroed if vertices have them */
-static cw_status write_places(const cwi_part *part, const cwi_seams *seams,
+static cw_status write_places(const cwi_part *part, const cwi_texture_seams *seams,
                               cwi_mesh_output *out, cw_error *err)
 {
     unsigned char line[CWI_RECORD_BYTES];
@@ -188,7 +188,7 @@ static cw_status write_places(const cwi_part *part, const cwi_seams *seams,
 static cw_status write_faces(cwi_part *part, cwi_mesh_output *out, uint64_t *places,
                              cw_error *err)
 {
-    cwi_seams seams = {0};
+    cwi_texture_seams seams = {0};
     const bool has_seams = part->texture && part->texture->on == CW_ON_CORNERS;
     cw_status st = has_seams ? cwi_seams_find(&part->mesh, &seams, err) : CW_OK;
     part->first_place = *places;

@@ -13,6 +13,7 @@ threads at once, as long as none writes to its arrays.
 """
 
 from ._about import Feature, Format, features, formats, make
+from ._atlas import Atlas, atlas
 from ._boolean import Combined, boolean
 from ._check import Check, Verdict, check, report
 from ._color import color_by
@@ -35,6 +36,7 @@ from ._write import Written, write
 __version__: str = _lib.cw_version().decode()
 
 __all__ = [
+    "Atlas",
     "Check",
     "Combined",
     "Cut",
@@ -57,6 +59,7 @@ __all__ = [
     "Verdict",
     "Volume",
     "Written",
+    "atlas",
     "boolean",
     "check",
     "color_by",

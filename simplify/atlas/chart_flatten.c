@@ -157,7 +157,9 @@ void cwi_chart_find_box(cwi_chart *chart)
     double least = INFINITY;
     chart->turn[0] = 1;
     for (int n = 0; n < ANGLES; n++) {
-        const double angle = CWI_PI / 2 * n / ANGLES, c = cos(angle), s = sin(angle);
+        double turn[2];
+        cwi_chart_turn((double)n / ANGLES, turn);
+        const double c = turn[0], s = turn[1];
         double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
         for (size_t e = 0; e < 2 * chart->border_count; e += 2) {
             const double *uv = chart->uv[chart->border[e]];

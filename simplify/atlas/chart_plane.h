@@ -29,4 +29,20 @@ static inline double cwi_chart_det(const double j[4])
     return j[0] * j[3] - j[1] * j[2];
 }
 
+/* Sets cosine and sine of an angle: a share, below 1, of a quarter of a turn. By its half's tangent, so
+ * that any machine computes the same. */
+static inline void cwi_chart_turn(double share, double turn[2])
+{
+    const double t = 0.41421356237309503 * share, square = t * t;
+    turn[0] = (1 - square) / (1 + square);
+    turn[1] = 2 * t / (1 + square);
+}
+
+/* Makes one turn of two, as complex numbers are multiplied. */
+static inline void cwi_chart_multiply(const double a[2], const double b[2], double turn[2])
+{
+    turn[0] = a[0] * b[0] - a[1] * b[1];
+    turn[1] = a[1] * b[0] + a[0] * b[1];
+}
+
 #endif

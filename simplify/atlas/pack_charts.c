@@ -6,6 +6,7 @@
 #include "core/base/status.h"
 #include "core/geometry/vec3.h"
 #include "simplify/atlas/chart_bits.h"
+#include "simplify/atlas/chart_plane.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -266,9 +267,12 @@ static bool place_chart(packer *p, size_t chart, bool *fits)
     const double *turn = p->charts[chart].turn;
     p->chart = &p->charts[chart];
     for (int n = 0; n < p->turns; n++) {
-        const double angle = 2 * CWI_PI * n / p->turns;
-        p->candidates[n].turn[0] = turn[0] * cos(angle) - turn[1] * sin(angle);
-        p->candidates[n].turn[1] = turn[1] * cos(angle) + turn[0] * sin(angle);
+        static const double quarters[4][2] = {{1, 0}, {0, 1}, {-1, 0}, {0, -1}};
+        const double *q = quarters[n % 4];
+        double by[2], chart_turn[2];
+        cwi_chart_turn((double)(n / 4) / (p->turns / 4), by);
+        cwi_chart_multiply(turn, by, chart_turn);
+        cwi_chart_multiply(chart_turn, q, p->candidates[n].turn);
     }
     cwi_parallel_for_all((size_t)p->turns, (size_t)1 << 20, p->packing->threads, find_place, p);
     candidate *best = NULL;

@@ -155,6 +155,33 @@ class Coordinates(Case):
         with self.fails(cw.Status.CANCELLED):
             cw.smooth(noisy, progress=lambda *_: False)
 
+    def test_an_atlas_lies_flat(self):
+        ball = cw.extract(make_ball(), 0)
+        found = cw.atlas(ball, size=512, margin=4, threads=2)
+        self.assertIsInstance(found, cw.Atlas)
+        self.assertNotIn("texture_coordinates", ball.attributes)
+        uv = found.mesh.attributes["texture_coordinates"].astype("f8").reshape(-1, 3, 2)
+        self.assertEqual(len(uv), len(ball.triangles))
+        self.assertTrue((uv >= 0).all() and (uv <= 1).all())
+        first, second = uv[:, 1] - uv[:, 0], uv[:, 2] - uv[:, 0]
+        area = -(first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0]) / 2  # the image's rows go down
+        self.assertGreaterEqual(area.min(), 0)
+        self.assertAlmostEqual(area.sum(), found.coverage, 5)
+        self.assertEqual((found.size, found.flipped), (512, 0))
+        self.assertLess(found.stretch, 1.3)
+        self.assertGreater(found.vertices, len(ball.vertices))
+        for wrong in (
+            lambda: cw.atlas(ball, size=63),
+            lambda: cw.atlas(ball, margin=65),
+            lambda: cw.atlas(ball, max_stretch=float("nan")),
+        ):
+            self.assertRaises(ValueError, wrong)
+        for wrong in ({"max_stretch": 0.5}, {"texels_per_mm": 1e6}, {"texels_per_mm": -1}):
+            with self.fails(cw.Status.ARGUMENT):
+                cw.atlas(ball, **wrong)
+        with self.fails(cw.Status.CANCELLED):
+            cw.atlas(ball, progress=lambda *_: False)
+
     def test_volumes_color_meshes(self):
         ball = make_ball()
         mesh = cw.extract(ball, 0)

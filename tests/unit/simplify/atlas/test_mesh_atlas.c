@@ -37,7 +37,7 @@ static double depth_in(const float (*uv)[2], double x, double y)
         const float *a = uv[k], *b = uv[(k + 1) % 3];
         const double dx = (double)b[0] - (double)a[0], dy = (double)b[1] - (double)a[1];
         depth =
-            fmin(depth, (dx * (y - (double)a[1]) - dy * (x - (double)a[0])) / hypot(dx, dy));
+            fmin(depth, -(dx * (y - (double)a[1]) - dy * (x - (double)a[0])) / hypot(dx, dy));
     }
     return depth;
 }

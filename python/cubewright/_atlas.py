@@ -1,0 +1,77 @@
+"""Texture coordinates: a surface laid flat in a square."""
+
+from __future__ import annotations
+
+from ctypes import byref
+from dataclasses import dataclass
+
+from . import _declarations as c
+from ._library import lib
+from ._mesh import Mesh, take_mesh
+from ._options import take_count, take_number, take_threads
+from ._progress import Progress, Reporter
+
+
+@dataclass(frozen=True)
+class Atlas:
+    """A mesh with texture coordinates, and facts on them.
+
+    mesh.attributes["texture_coordinates"] is (3 m, 2) float32, a row for each corner of a triangle: (0, 0) is
+    the upper left corner of the texture's image, (1, 1) the lower right one.
+    """
+
+    mesh: Mesh
+    size: int  # texels along each side of the texture
+    charts: int
+    seams: int  # edges between two triangles that lie apart in the texture
+    vertices: int  # of files that hold one texture coordinate for each vertex
+    texels_per_mm: float
+    stretch: float  # L2 of the whole surface: 1 is none
+    coverage: float  # share of the texture that triangles cover
+    flipped: int  # triangles turned over by the rounding to single precision
+
+
+def atlas(
+    mesh: Mesh,
+    *,
+    size: int = 2048,
+    margin: int = 2,
+    texels_per_mm: float = 0.0,
+    max_stretch: float = 0.0,
+    threads: int = 0,
+    progress: Progress = None,
+) -> Atlas:
+    """Returns a copy of a mesh with texture coordinates. Its surface is cut into charts, which are laid
+    flat and packed into a square [Garland2001, Smith2015, Levy2002].
+
+    size           texels along each side of the texture, 64 to 16384
+    margin         texels that stay free around each chart, 1 to 64
+    texels_per_mm  0: as many as fit
+    max_stretch    more than 1: a chart that is stretched more is cut in two; 0: 1.25
+
+    No triangle is turned over, and none lies on another. Write the mesh as GLB or OBJ.
+    Raises Error: ARGUMENT (also for charts that do not fit), NO_MEMORY, CANCELLED.
+    """
+    take_mesh("mesh", mesh)
+    reporter = Reporter(progress)
+    desc = c.cw_atlas_desc(
+        size=take_count("size", size, 64, 16384),
+        margin=take_count("margin", margin, 1, 64),
+        texels_per_mm=take_number("texels_per_mm", texels_per_mm),
+        max_stretch=take_number("max_stretch", max_stretch),
+        threads=take_threads(threads),
+        progress=reporter.struct,
+    )
+    out, facts = mesh.copy(), c.cw_atlas_facts()
+    reporter.call(lib.cw_mesh_atlas, byref(out._struct), byref(desc), byref(facts))
+    return Atlas(
+        mesh=out,
+        size=facts.size,
+        charts=facts.charts,
+        seams=facts.seams,
+        vertices=facts.vertices,
+        texels_per_mm=facts.texels_per_mm,
+        stretch=facts.stretch,
+        coverage=facts.coverage,
+        flipped=facts.flipped,
+    )
