@@ -238,13 +238,27 @@ static cw_status end_writing(const writing *w, cw_error *err)
     return CW_OK;
 }
 
+/* Fails when compression merged vertices or flattened triangles: then no file appears. */
+static cw_status hold_to_shape(void *user, cw_error *err)
+{
+    const cli_made *made = user;
+    const cw_compressed *c = &made->compressed;
+    if (!c->merged && !c->flat)
+        return CW_OK;
+    return cwi_fail(
+        err, CW_ERR_CHECK,
+        "with %d bits %s vertices fall onto others and %s triangles lose their area, so "
+        "it was not written; without --bits enough bits are chosen",
+        c->bits, cli_count(c->merged), cli_count(c->flat));
+}
+
 static cw_status write_mesh(cli_report *report, const cli_delivery *how, const cli_load *l,
                             cli_made *made, cw_error *err)
 {
     writing w = plan_writing(report, how, l, made);
     w.desc.progress = cli_progress((double)l->triangles / 1e6, "Mtriangle");
     cli_report_begin(report);
-    write_bytes(&w, NULL);
+    write_bytes(&w, &(cw_write_consent){hold_to_shape, made});
     return end_writing(&w, err);
 }
 
@@ -321,20 +335,6 @@ static bool writes_in_passing(const cli_delivery *how, const cli_made *made)
 
 /* --- delivery ---------------------------------------------------------------------------- */
 
-/* Fails when compression merged vertices or flattened triangles. Bits that were given are used
- * all the same, so the file is already written. */
-static cw_status hold_to_shape(const cli_made *made, cw_error *err)
-{
-    const cw_compressed *c = &made->compressed;
-    if (!c->merged && !c->flat)
-        return CW_OK;
-    return cwi_fail(err, CW_ERR_CHECK,
-                    "%s: with %d bits %s vertices fall onto others and %s triangles lose their "
-                    "area; without --bits enough bits are chosen",
-                    cli_shown_path(made->path), c->bits, cli_count(c->merged),
-                    cli_count(c->flat));
-}
-
 cw_status cli_deliver(cli_report *report, const cli_delivery *how, const cw_part *parts,
                       size_t part_count, size_t border_loops, double start, cw_error *err)
 {
@@ -345,7 +345,7 @@ cw_status cli_deliver(cli_report *report, const cli_delivery *how, const cw_part
                             : check_then_write(report, how, &l, made, err);
     if (st == CW_OK)
         cli_print_summary(how, made, &l, border_loops, start);
-    return st == CW_OK ? hold_to_shape(made, err) : st;
+    return st;
 }
 
 cw_status cli_deliver_step(cli_report *report, const cli_delivery *how, const cw_mesh *mesh,
