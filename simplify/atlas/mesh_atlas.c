@@ -275,6 +275,7 @@ cw_status cw_mesh_atlas(cw_mesh *mesh, const cw_atlas_desc *desc, cw_atlas_facts
                         cw_error *err)
 {
     CWI_REQUIRE(err, mesh);
+    CWI_REQUIRE_VERSION(err, desc, 0);
     cw_atlas_desc d = desc ? *desc : (cw_atlas_desc){0};
     d.size = d.size ? d.size : DEFAULT_SIZE;
     d.margin = d.margin ? d.margin : DEFAULT_MARGIN;
