@@ -425,6 +425,10 @@ static unsigned find_dropped(const cw_part *parts, size_t count, const cwi_parts
     unsigned had = CW_KEEPS_SHARING | (placed->count > 1 ? CW_KEEPS_PARTS : 0u);
     unsigned has = keeps & (CW_KEEPS_SHARING | CW_KEEPS_PARTS | CW_KEEPS_AFFINE);
     for (size_t i = 0; i < count; i++)
+        had |= parts[i].textures ? CW_KEEPS_PICTURES : 0u;
+    for (size_t i = 0; i < placed->count; i++)
+        has |= placed->items[i].textures ? CW_KEEPS_PICTURES : 0u;
+    for (size_t i = 0; i < count; i++)
         had |= parts[i].spool ? cwi_spool_arrays(parts[i].spool) : cwi_arrays_of(parts[i].mesh);
     for (size_t i = 0; i < placed->count; i++) {
         const bool hidden = f->write.one_coloring && placed->items[i].face_colors;

@@ -1,4 +1,4 @@
-/* The command uv: texture coordinates, one square for all parts of a file. */
+/* The command uv: texture coordinates, one square for all parts of a file, and a normal map. */
 #include "cli/commands/command_rows.h"
 #include "cli/commands/mesh_command.h"
 #include "cli/framework/console.h"
@@ -8,6 +8,7 @@
 #include "core/mesh/mesh_attributes.h"
 
 #include <cubewright/atlas.h>
+#include <cubewright/bake.h>
 
 #include <math.h>
 #include <stdio.h>
@@ -17,12 +18,25 @@ typedef struct uv_args {
     cli_mesh_args mesh;
     size_t atlas, margin;
     cli_number density;
+    cli_length reach;
 } uv_args;
+
+typedef struct uv_state {
+    cw_atlas_facts facts;
+    cli_mesh full; /* of --bake */
+    double reach_mm;
+    cw_bake_facts baked;
+    cw_textures textures;
+    uint8_t *png; /* of textures; owned */
+} uv_state;
 
 static const uv_args *args_of(const cli_mesh_run *r)
 {
     return (const uv_args *)r->args;
 }
+
+/* Of --reach, as a share of the box's diagonal. */
+static const double DEFAULT_REACH = 0.04;
 
 static const uv_args defaults = {.atlas = 2048, .margin = 2};
 
@@ -35,6 +49,12 @@ static const cli_option options[] = {
      offsetof(uv_args, margin)},
     {"texel-density", 0, CLI_NUMBER, "D", "Texels for each mm (as many as fit)",
      offsetof(uv_args, density)},
+    CLI_HEADED("Normal map"),
+    {"bake", 0, CLI_TEXT, "MESH",
+     "Bake the normals of this mesh, which has more triangles, into a normal map of the output (none)",
+     offsetof(cli_mesh_args, source), CLI_VALUES_MESH},
+    {"reach", 0, CLI_LENGTH, "L",
+     "How far the mesh of --bake may be (4% of the box's diagonal)", offsetof(uv_args, reach)},
     CLI_HEADED("Parts"),
     CLI_MESH_MERGE,
     CLI_MESH_ORIENT,
@@ -43,6 +63,7 @@ static const cli_option options[] = {
 
 static const cli_rule rules[] = {
     {NULL, CLI_NEEDS, "output"},
+    {"reach", CLI_NEEDS, "bake"},
     CLI_COMPRESS_RULES,
 };
 
@@ -55,6 +76,8 @@ static void put_params(cli_json *j, const cli_mesh_run *r, const cli_made *made)
     cli_json_count(j, "margin", args->margin);
     if (args->density.given)
         cli_json_number(j, "texels_per_mm", args->density.value);
+    if (args->mesh.source)
+        cli_json_number(j, "reach_mm", ((const uv_state *)r->state)->reach_mm);
     cli_json_bool(j, "merge", r->args->merge);
     cli_json_bool(j, "orient", r->args->orient);
     cli_json_count(j, "merged_vertices", r->pieces.merged);
@@ -63,9 +86,12 @@ static void put_params(cli_json *j, const cli_mesh_run *r, const cli_made *made)
 
 static void put_facts(cli_json *j, const cli_mesh_run *r)
 {
-    const cw_atlas_facts *f = r->state;
+    const uv_state *s = r->state;
+    const cw_atlas_facts *f = &s->facts;
     if (!r->is_made)
         return;
+    if (r->args->source)
+        cli_json_mesh_file(j, "full", &s->full);
     cli_json_open(j, "atlas", '{');
     cli_json_count(j, "charts", f->charts);
     cli_json_count(j, "seams", f->seams);
@@ -75,11 +101,38 @@ static void put_facts(cli_json *j, const cli_mesh_run *r)
     cli_json_number(j, "coverage", f->coverage);
     cli_json_count(j, "flipped", f->flipped);
     cli_json_close(j, '}');
+    if (!r->args->source)
+        return;
+    cli_json_open(j, "normal_map", '{');
+    cli_json_count(j, "texels", s->baked.texels);
+    cli_json_count(j, "missed", s->baked.missed);
+    cli_json_number(j, "max_mm", s->baked.max_mm);
+    cli_json_number(j, "mean_mm", s->baked.mean_mm);
+    cli_json_number(j, "mean_deg", s->baked.mean_deg);
+    cli_json_close(j, '}');
+}
+
+/* Says how the normal map came out. */
+static void report_bake(cli_mesh_run *r)
+{
+    const uv_state *s = r->state;
+    const size_t used = strlen(r->found);
+    const double missed = 100 * (double)s->baked.missed / (double)s->baked.texels;
+    snprintf(
+        r->found + used, sizeof r->found - used,
+        "; normal map of %s, at most %.3g mm away, mean %.2g mm; %.2g %% of the texels missed",
+        s->full.path, s->baked.max_mm, s->baked.mean_mm, missed);
+    if (missed > 1)
+        cli_report_warn(
+            &r->report,
+            "%.2g %% of the texels found nothing within --reach %.3g mm of %s that faces "
+            "the same way: they are flat",
+            missed, s->reach_mm, s->full.path);
 }
 
 static cw_status report_facts(cli_mesh_run *r, cw_error *err)
 {
-    const cw_atlas_facts *f = r->state;
+    const cw_atlas_facts *f = &((const uv_state *)r->state)->facts;
     snprintf(
         r->found, sizeof r->found,
         "; %s chart%s, %s edges of seams, %s vertices with one coordinate each; %u x %u texels, "
@@ -87,6 +140,8 @@ static cw_status report_facts(cli_mesh_run *r, cw_error *err)
         cli_count(f->charts), f->charts == 1 ? "" : "s", cli_count(f->seams),
         cli_count(f->vertices), f->size, f->size, 100 * f->coverage, f->texels_per_mm,
         f->stretch);
+    if (r->args->source)
+        report_bake(r);
     if (f->flipped)
         cli_report_warn(&r->report, "single precision turned %s triangles over: --atlas %u",
                         cli_count(f->flipped), 2 * f->size);
@@ -104,6 +159,10 @@ static cw_status check_values(cli_mesh_run *r, cw_error *err)
                         CW_ATLAS_MAX_SIZE);
     if (args->margin < 1 || args->margin > 64)
         return cwi_fail(err, CW_ERR_ARGUMENT, "--margin %zu: expected 1 to 64", args->margin);
+    const cw_format *format = cw_mesh_format(args->mesh.output, args->mesh.written.format);
+    if (args->mesh.source && format && !(format->keeps & CW_KEEPS_PICTURES))
+        return cwi_fail(err, CW_ERR_ARGUMENT,
+                        "%s holds no normal map; --bake is for .glb and .gltf", format->name);
     if (args->density.given && !(args->density.value > 0))
         return cwi_fail(err, CW_ERR_ARGUMENT, "--texel-density %g: expected more than 0",
                         args->density.value);
@@ -148,9 +207,77 @@ static cw_status share_coordinates(cli_pieces *p, const cw_mesh *all, cw_error *
     return st;
 }
 
+/* Reads the mesh whose normals are baked. */
+static cw_status read_full(cli_mesh_run *r, cw_error *err)
+{
+    uv_state *s = r->state;
+    return r->args->source
+               ? cli_read_reference(r->args->source, NULL, &r->args->input, &s->full, err)
+               : CW_OK;
+}
+
+static cw_status resolve_reach(cli_mesh_run *r, cw_error *err)
+{
+    uv_state *s = r->state;
+    cw_status st =
+        cli_find_length(&r->pieces, "--reach", &args_of(r)->reach, &s->reach_mm, err);
+    if (st == CW_OK && !(s->reach_mm > 0))
+        s->reach_mm = DEFAULT_REACH * r->pieces.diagonal_mm;
+    return st;
+}
+
+/* Joins the finished pieces, with their normals and coordinates alone. */
+static cw_status join_finished(cli_pieces *p, cw_mesh *all, cw_error *err)
+{
+    cw_status st = CW_OK;
+    for (size_t n = 0; n < p->count && st == CW_OK; n++) {
+        cw_mesh *out = &p->piece[n].out;
+        if (!out->normals)
+            st = cw_mesh_normals(out, err);
+        cw_mesh bare = *out;
+        bare.scalars = NULL;
+        bare.colors = NULL;
+        bare.labels = NULL;
+        bare.attributes = cw_mesh_attribute_find(out, CW_TEXTURE_COORDINATES);
+        bare.attribute_count = 1;
+        if (st == CW_OK)
+            st = n ? cwi_mesh_append(all, &bare, err) : cwi_mesh_copy(&bare, all, err);
+    }
+    return st;
+}
+
+/* Bakes the normal map of all pieces. Normals that the full mesh lacks are made once its corners are
+ * joined. */
+static cw_status bake(cli_mesh_run *r, cw_error *err)
+{
+    const uv_args *args = args_of(r);
+    uv_state *s = r->state;
+    cw_mesh all = {0};
+    cw_image image = {0};
+    const cw_bake_desc desc = {
+        .size = (uint32_t)args->atlas,
+        .margin = (uint32_t)args->margin,
+        .reach_mm = s->reach_mm,
+        .threads = r->threads,
+        .progress = cli_progress((double)(args->atlas * args->atlas) / 1e6, "Mtexel")};
+    cw_status st = join_finished(&r->pieces, &all, err);
+    if (st == CW_OK && !s->full.mesh.normals)
+        st = cw_mesh_weld(&s->full.mesh, NULL, err);
+    if (st == CW_OK)
+        st = cw_bake_normals(&all, &s->full.mesh, &desc, &image, &s->baked, err);
+    if (st == CW_OK)
+        st = cw_image_encode(&image, false, &s->png, &s->textures.normal.size, err);
+    s->textures.normal.bytes = s->png;
+    r->pieces.textures = &s->textures;
+    cw_image_free(&image);
+    cw_mesh_free(&all);
+    return st;
+}
+
 static cw_status lay_flat(cli_mesh_run *r, cw_error *err)
 {
     const uv_args *args = args_of(r);
+    uv_state *s = r->state;
     cw_mesh all = {0};
     const cw_atlas_desc desc = {
         .size = (uint32_t)args->atlas,
@@ -160,16 +287,18 @@ static cw_status lay_flat(cli_mesh_run *r, cw_error *err)
         .progress = cli_progress((double)r->pieces.triangles / 1e6, "Mtriangle")};
     cw_status st = join_pieces(&r->pieces, &all, err);
     if (st == CW_OK)
-        st = cw_mesh_atlas(&all, &desc, r->state, err);
+        st = cw_mesh_atlas(&all, &desc, &s->facts, err);
     if (st == CW_OK)
         st = share_coordinates(&r->pieces, &all, err);
     cw_mesh_free(&all);
-    return st;
+    return st == CW_OK && r->args->source ? bake(r, err) : st;
 }
 
 static const cli_mesh_command uv = {
     .name = "uv",
     .check = check_values,
+    .prepare = read_full,
+    .resolve = resolve_reach,
     .work = lay_flat,
     .report = report_facts,
     .put_params = put_params,
@@ -178,8 +307,11 @@ static const cli_mesh_command uv = {
 
 static cw_status run_uv(void *args, cw_error *err)
 {
-    cw_atlas_facts facts = {0};
-    return cli_run_mesh_command(&uv, args, &facts, 1, err);
+    uv_state state = {0};
+    const cw_status st = cli_run_mesh_command(&uv, args, &state, 1, err);
+    cli_free_mesh(&state.full);
+    cw_bytes_free(state.png);
+    return st;
 }
 
 const cli_command cli_uv = {

@@ -18,8 +18,9 @@ const cli_synonym cli_synonyms[] = {
     {"label|segment|mask|atlas", NULL, "--labels|--names|label|--inside",
      "'extract --labels all' makes a closed mesh of each label of a label map or a mask. An "
      "isovalue joins all labels above it."},
-    {"uv|unwrap|texture|texcoord|chart|lightmap", "uv", "uv|--atlas|--texel-density|--margin",
-     "'uv' gives a mesh texture coordinates, for GLB and OBJ."},
+    {"uv|unwrap|texture|texcoord|chart|lightmap|bake|normal map|game", "uv",
+     "uv|--atlas|--texel-density|--margin|--bake",
+     "'uv' gives a mesh texture coordinates, for GLB and OBJ, and a normal map, for GLB."},
     {"denois|despeckl", NULL, "--denoise|smooth|--min-volume|--drop-components",
      "'extract --denoise' smooths the values of volumes, 'smooth' meshes. --min-volume and "
      "--drop-components remove small components."},

@@ -182,8 +182,10 @@ cw_status cli_list_parts(const cli_pieces *p, cw_part **parts, cw_error *err)
     if (!*parts)
         return cwi_fail_memory(err);
     for (size_t n = 0; n < p->count; n++)
-        (*parts)[n] = (cw_part){
-            .mesh = &p->piece[n].out, .name = p->piece[n].name, .label = p->piece[n].label};
+        (*parts)[n] = (cw_part){.mesh = &p->piece[n].out,
+                                .name = p->piece[n].name,
+                                .label = p->piece[n].label,
+                                .textures = p->textures};
     return CW_OK;
 }
 

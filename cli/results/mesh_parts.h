@@ -17,9 +17,10 @@ typedef struct cli_piece {
 typedef struct cli_pieces {
     const char *path; /* of the file */
     cli_piece *piece;
-    size_t count, triangles; /* these of all, before */
-    size_t merged, dropped;  /* vertices; components */
-    double diagonal_mm;      /* of the box of all, as they were read */
+    size_t count, triangles;     /* these of all, before */
+    size_t merged, dropped;      /* vertices; components */
+    double diagonal_mm;          /* of the box of all, as they were read */
+    const cw_textures *textures; /* of all, borrowed; NULL: none */
 } cli_pieces;
 
 /* Makes a piece of each part that has triangles, vertices at equal positions one, and says so.

@@ -2,6 +2,10 @@
 #include "formats/bytes/little_endian.h"
 #include "formats/gltf/gltf_pack.h"
 
+#include "core/base/memory.h"
+#include "core/base/status.h"
+#include "core/texture/tangents.h"
+
 #include <math.h>
 
 enum { BYTE = 5120, UNSIGNED_BYTE = 5121, UNSIGNED_SHORT = 5123, UNSIGNED_INT = 5125 };
@@ -59,6 +63,12 @@ void cwi_gltf_plan_arrays(const cwi_gltf_plan *plan, cwi_gltf_piece *piece)
                                           .numbers = 2,
                                           .count = m->vertex_count,
                                           .stride = 8});
+    if (piece->tangents)
+        add_array(piece, (cwi_gltf_array){.use = CWI_GLTF_TANGENT,
+                                          .component = CWI_GLTF_FLOAT,
+                                          .numbers = 4,
+                                          .count = m->vertex_count,
+                                          .stride = 16});
     if (!m->colors)
         return;
     const bool bytes = fit_bytes(plan, m);
@@ -68,6 +78,16 @@ void cwi_gltf_plan_arrays(const cwi_gltf_plan *plan, cwi_gltf_piece *piece)
                                       .normalized = true,
                                       .count = m->vertex_count,
                                       .stride = bytes ? 4 : 8});
+}
+
+cw_status cwi_gltf_add_tangents(cwi_gltf_piece *piece, cw_error *err)
+{
+    const cwi_part *part = piece->part;
+    if (!piece->normal_image || !part->texture || !part->mesh.normals)
+        return CW_OK;
+    piece->tangents = cwi_alloc_array(part->mesh.vertex_count, sizeof *piece->tangents);
+    return piece->tangents ? cwi_tangents(&part->mesh, piece->tangents, err)
+                           : cwi_fail_memory(err);
 }
 
 void cwi_gltf_use_bytes(cwi_gltf_array *colors)
@@ -146,6 +166,10 @@ void cwi_gltf_put(const cwi_gltf_plan *plan, const cwi_gltf_piece *piece,
         break;
     case CWI_GLTF_NORMAL:
         put_normal(a, m->normals + 3 * i, to);
+        break;
+    case CWI_GLTF_TANGENT:
+        for (size_t c = 0; c < 4; c++)
+            to = cwi_put_f32(to, piece->tangents[i][c]);
         break;
     case CWI_GLTF_TEXTURE:
         for (size_t c = 0; c < 2; c++)

@@ -8,7 +8,7 @@
 #include "core/base/status.h"
 #include "core/geometry/vec3.h"
 #include "core/mesh/mesh.h"
-#include "core/mesh/split_seams.h"
+#include "core/texture/split_seams.h"
 #include "formats/codec/draco_pack.h"
 #include "formats/codec/meshopt_wrap.h"
 #include "formats/gltf/gltf_formats.h"
@@ -87,7 +87,11 @@ static cw_status own_parts(cwi_gltf_plan *plan, bool all, cw_error *err)
         m->triangles = own->triangles;
         m->normals = own->normals ? own->normals : m->normals;
         m->colors = own->colors ? own->colors : m->colors;
-        items[p].texture = all && items[p].texture ? cwi_texture_of(own) : items[p].texture;
+        if (all && items[p].texture) {
+            items[p].texture = cwi_texture_of(own);
+            m->attributes = own->attributes;
+            m->attribute_count = own->attribute_count;
+        }
         memcpy(m->origin, origin, sizeof origin);
     }
     return CW_OK;
@@ -260,6 +264,8 @@ static cw_status compress_meshopt(cwi_gltf_plan *plan, size_t p,
 {
     cwi_gltf_piece *piece = &plan->pieces[p];
     cw_status st = cwi_mesh_reorder(&plan->own[p], meshopt, false, err);
+    if (st == CW_OK)
+        st = cwi_gltf_add_tangents(piece, err);
     if (st == CW_OK)
         cwi_gltf_plan_arrays(plan, piece);
     for (size_t n = 0; st == CW_OK && n < piece->array_count; n++)

@@ -16,6 +16,7 @@ typedef enum cwi_gltf_use {
     CWI_GLTF_NORMAL,
     CWI_GLTF_COLOR,
     CWI_GLTF_TEXTURE,
+    CWI_GLTF_TANGENT,
     CWI_GLTF_USES
 } cwi_gltf_use;
 
@@ -31,9 +32,17 @@ typedef struct cwi_gltf_array {
     uint64_t packed_at, packed; /* meshopt: place and number of its compressed bytes */
 } cwi_gltf_array;
 
+/* A picture in the buffer. */
+typedef struct cwi_gltf_image {
+    cw_texture file;
+    uint64_t at; /* its place there */
+} cwi_gltf_image;
+
 /* A node with a mesh of one primitive, or of one for each colour. */
 typedef struct cwi_gltf_piece {
     const cwi_part *part;
+    size_t normal_image;     /* of the document's images, from 1 on; 0: none */
+    float (*tangents)[4];    /* vertices; NULL: none are written */
     cwi_color_groups groups; /* a primitive each; none: there is one primitive */
     cwi_gltf_array arrays[CWI_GLTF_USES];
     size_t array_count;
@@ -53,12 +62,14 @@ typedef struct cwi_gltf_document {
     const cw_provenance *provenance;
     size_t provenance_count;
     const double *local_origin; /* stated in the extras of nodes; NULL: applied */
-    double end_s;               /* of the animation that shows one piece at a time; 0: none */
-    uint64_t keys_at;           /* place of the animation's numbers: scale_count scales, */
-    size_t scale_count;         /* then the times of every piece */
-    bool quantized;             /* integers for positions or normals: KHR_mesh_quantization */
-    uint64_t bytes;             /* of the buffer */
-    uint64_t unpacked;          /* meshopt: size of the buffer that no file has; else 0 */
+    cwi_gltf_image *images;     /* behind everything else */
+    size_t image_count;
+    double end_s;       /* of the animation that shows one piece at a time; 0: none */
+    uint64_t keys_at;   /* place of the animation's numbers: scale_count scales, */
+    size_t scale_count; /* then the times of every piece */
+    bool quantized;     /* integers for positions or normals: KHR_mesh_quantization */
+    uint64_t bytes;     /* of the buffer */
+    uint64_t unpacked;  /* meshopt: size of the buffer that no file has; else 0 */
 } cwi_gltf_document;
 
 #ifdef __cplusplus

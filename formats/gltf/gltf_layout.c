@@ -6,7 +6,7 @@
 
 #include "core/base/memory.h"
 #include "core/base/status.h"
-#include "core/mesh/split_seams.h"
+#include "core/texture/split_seams.h"
 
 #include <math.h>
 #include <string.h>
@@ -24,8 +24,11 @@ void cwi_gltf_plan_free(cwi_gltf_plan *plan)
         cw_mesh_free(&plan->split[i]);
     for (size_t i = 0; plan->seamed && i < plan->parts.count; i++)
         cw_mesh_free(&plan->seamed[i]);
-    for (size_t i = 0; plan->pieces && i < plan->parts.count; i++)
+    for (size_t i = 0; plan->pieces && i < plan->parts.count; i++) {
         cwi_color_groups_free(&plan->pieces[i].groups);
+        cwi_free(plan->pieces[i].tangents);
+    }
+    cwi_free(plan->document.images);
     cwi_free(plan->blocks);
     cwi_free(plan->keys);
     cwi_free(plan->own);
@@ -191,6 +194,42 @@ cw_status cwi_gltf_count_split(const cwi_parts *parts, const cw_write_desc *desc
     return st;
 }
 
+/* --- pictures ------------------------------------------------------------------------------ */
+
+/* Lists the pictures of materials, each once. */
+static cw_status list_images(cwi_gltf_plan *plan, cw_error *err)
+{
+    cwi_gltf_document *d = &plan->document;
+    d->images = cwi_alloc_zeroed(plan->parts.count, sizeof *d->images);
+    if (!d->images)
+        return cwi_fail_memory(err);
+    for (size_t p = 0; p < plan->parts.count; p++) {
+        const cw_textures *textures = plan->parts.items[p].textures;
+        if (!textures || !textures->normal.bytes)
+            continue;
+        size_t n = 0;
+        while (n < d->image_count && d->images[n].file.bytes != textures->normal.bytes)
+            n++;
+        if (n == d->image_count)
+            d->images[d->image_count++].file = textures->normal;
+        plan->pieces[p].normal_image = n + 1;
+    }
+    return CW_OK;
+}
+
+/* Places pictures behind everything else. */
+static cw_status place_images(cwi_gltf_plan *plan, cw_error *err)
+{
+    cwi_gltf_document *d = &plan->document;
+    for (size_t n = 0; n < d->image_count; n++) {
+        d->images[n].at = d->bytes;
+        d->bytes += (d->images[n].file.size + 3) / 4 * 4;
+    }
+    return d->bytes <= MAX_BYTES
+               ? CW_OK
+               : cwi_fail(err, CW_ERR_LIMIT, "glTF holds at most 4 GiB, with its pictures");
+}
+
 /* --- the file ----------------------------------------------------------------------------- */
 
 /* Places the arrays one after another, each at a multiple of 4 bytes, as accessors require. */
@@ -263,6 +302,8 @@ cw_status cwi_gltf_plan_make(cwi_gltf_plan *plan, const cwi_parts *parts,
     if (st == CW_OK)
         st = plan_colors(plan, out->desc, err);
     if (st == CW_OK)
+        st = list_images(plan, err);
+    if (st == CW_OK)
         st = check_vertices(&plan->parts, err);
     if (st != CW_OK)
         return st;
@@ -273,12 +314,16 @@ cw_status cwi_gltf_plan_make(cwi_gltf_plan *plan, const cwi_parts *parts,
     if (out->desc->compression != CW_COMPRESS_NONE)
         st = cwi_gltf_compress(plan, out->desc, err);
     for (size_t p = 0; st == CW_OK && p < parts->count; p++)
-        if (!plan->pieces[p].array_count) /* compressed pieces have theirs already */
+        if (!plan->pieces[p].array_count) { /* compressed pieces have theirs already */
+            st = cwi_gltf_add_tangents(&plan->pieces[p], err);
             cwi_gltf_plan_arrays(plan, &plan->pieces[p]);
+        }
     if (st == CW_OK)
         st = lay_out(plan, err);
     if (st == CW_OK)
         st = cwi_gltf_plan_animation(plan, err);
+    if (st == CW_OK)
+        st = place_images(plan, err);
     for (size_t p = 0; st == CW_OK && p < parts->count; p++) {
         cwi_gltf_piece *piece = &plan->pieces[p];
         if (!piece->draco)

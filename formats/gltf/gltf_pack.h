@@ -50,6 +50,10 @@ static inline bool cwi_gltf_on_grid(const cwi_gltf_plan *plan)
  * numbers for the exponential filter of EXT_meshopt_compression. */
 void cwi_gltf_plan_arrays(const cwi_gltf_plan *plan, cwi_gltf_piece *piece);
 
+/* Computes the tangents of a part with a normal map, if it has normals. Its arrays are final.
+ * Returns CW_ERR_NO_MEMORY */
+CW_NODISCARD cw_status cwi_gltf_add_tangents(cwi_gltf_piece *piece, cw_error *err);
+
 /* Stores colours in 8 bits each, for Draco, whatever the loss. */
 void cwi_gltf_use_bytes(cwi_gltf_array *colors);
 

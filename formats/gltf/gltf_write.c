@@ -132,6 +132,12 @@ static cw_status push_buffer(byte_pipe *p, const cwi_gltf_plan *plan, cw_error *
             st = push_array(p, plan, &plan->pieces[n], &plan->pieces[n].arrays[a], err);
     if (st == CW_OK)
         st = push_bytes(p, plan->keys, plan->keys_size, err);
+    for (size_t n = 0; st == CW_OK && n < plan->document.image_count; n++) {
+        const cw_texture *file = &plan->document.images[n].file;
+        st = push_bytes(p, file->bytes, file->size, err);
+        if (st == CW_OK)
+            st = push_zeros(p, -file->size % 4, err);
+    }
     return st == CW_OK ? flush_pipe(p, err) : st;
 }
 

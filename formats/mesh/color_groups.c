@@ -4,7 +4,7 @@
 #include "core/base/memory.h"
 #include "core/base/status.h"
 #include "core/mesh/mesh.h"
-#include "core/mesh/split_seams.h"
+#include "core/texture/split_seams.h"
 
 #include <stdlib.h>
 #include <string.h>

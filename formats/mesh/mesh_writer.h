@@ -41,6 +41,7 @@ typedef struct cwi_part {
     const uint8_t
         *face_colors; /* CW_FACE_COLORS: triangle_count x 4; NULL: none that the file keeps */
     const cw_attribute *texture; /* CW_TEXTURE_COORDINATES; NULL: none that the file keeps */
+    const cw_textures *textures; /* as in cw_part, where the file keeps it */
     const uint32_t
         *places; /* corners: numbers of their texture coordinates, for a writer's own use */
     uint64_t first_place; /* as first, of these numbers */

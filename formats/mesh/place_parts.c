@@ -5,7 +5,7 @@
 #include "core/base/status.h"
 #include "core/base/text.h"
 #include "core/mesh/mesh_attributes.h"
-#include "core/mesh/split_seams.h"
+#include "core/texture/split_seams.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -154,6 +154,7 @@ static void choose_arrays(cwi_parts *parts, unsigned keeps)
         part->face_colors =
             part->arrays & CW_KEEPS_FACE_COLORS ? find_face_colors(&part->mesh) : NULL;
         part->texture = part->arrays & CW_KEEPS_TEXTURE ? cwi_texture_of(&part->mesh) : NULL;
+        part->textures = keeps & CW_KEEPS_PICTURES && part->texture ? part->textures : NULL;
         keep_arrays(&part->mesh, part->arrays);
         if (keeps & CW_KEEPS_PARTS && keeps & CW_KEEPS_COLORS)
             choose_color(part);
@@ -212,6 +213,7 @@ static void add_part(cwi_parts *parts, const cw_part *given, const double origin
     part->rms_error_mm = given->rms_error_mm;
     part->time_s = given->time_s;
     part->label = given->label;
+    part->textures = given->textures;
     part->mesh = *mesh;
     part->spool = given->spool;
     part->turn = cwi_turn_to(axes);

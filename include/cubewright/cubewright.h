@@ -3,6 +3,7 @@
 #define CUBEWRIGHT_CUBEWRIGHT_H
 
 #include <cubewright/atlas.h>
+#include <cubewright/bake.h>
 #include <cubewright/boolean.h>
 #include <cubewright/camera.h>
 #include <cubewright/check.h>

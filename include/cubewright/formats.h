@@ -461,6 +461,18 @@ typedef struct cw_mesh_file {
 CW_NODISCARD CW_API cw_status cw_mesh_read(const char *path, const cw_mesh_read_desc *desc,
                                            cw_mesh *mesh, cw_mesh_file *file, cw_error *err);
 
+/* A picture on a surface: the bytes of its file, PNG or JPEG. */
+typedef struct cw_texture {
+    const uint8_t *bytes; /* borrowed; NULL: none */
+    size_t size;
+} cw_texture;
+
+/* The pictures on a surface, by the texture coordinates of its mesh. */
+typedef struct cw_textures {
+    uint32_t version;  /* 0: the first version of this struct */
+    cw_texture normal; /* a normal map in tangent space, see cw_bake_normals() */
+} cw_textures;
+
 /* A named mesh, one of several in a file. */
 typedef struct cw_part {
     const cw_mesh *mesh;   /* borrowed */
@@ -476,6 +488,7 @@ typedef struct cw_part {
         *spool; /* borrowed: mesh is cw_mesh_spool_frame() of it; default: none. That of a team
                    (cw_mesh_spool_share) is written by all its processes together: PLY, STL and
                    GLB in binary by each at its place, other formats by rank 0 */
+    const cw_textures *textures; /* borrowed; parts may share one; default: none */
 } cw_part;
 
 /* Reads the parts of a file, each as a mesh. Parts are the objects of OBJ, or its groups if it
@@ -739,7 +752,8 @@ typedef enum cw_keeps {
     CW_KEEPS_FACE_COLORS = 512, /* CW_FACE_COLORS */
     CW_KEEPS_OPACITY = 1024,    /* of vertices, beside their colours */
     CW_KEEPS_TEXTURE = 2048,    /* CW_TEXTURE_COORDINATES; glTF splits vertices at seams */
-    CW_KEEPS_ALL = 4095
+    CW_KEEPS_PICTURES = 4096,   /* cw_part.textures */
+    CW_KEEPS_ALL = 8191
 } cw_keeps;
 
 /* A format that this build or another one reads or writes. */

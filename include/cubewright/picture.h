@@ -103,6 +103,16 @@ CW_NODISCARD CW_API cw_status cw_image_compare(const cw_image *a, const cw_image
 CW_NODISCARD CW_API cw_status cw_image_write(const char *path, const cw_image *image,
                                              cw_error *err);
 
+/* Makes the bytes of a PNG file in memory.
+ * is_color  it is tagged as sRGB; numbers such as normals are not
+ * bytes     set to *size of them; free them with cw_bytes_free()
+ * Returns   as cw_image_write() */
+CW_NODISCARD CW_API cw_status cw_image_encode(const cw_image *image, bool is_color,
+                                              uint8_t **bytes, size_t *size, cw_error *err);
+
+/* Frees the bytes of a file in memory. Harmless on NULL. */
+CW_API void cw_bytes_free(uint8_t *bytes);
+
 #ifdef __cplusplus
 }
 #endif

@@ -13,7 +13,7 @@ threads at once, as long as none writes to its arrays.
 """
 
 from ._about import Feature, Format, features, formats, make
-from ._atlas import Atlas, atlas
+from ._atlas import Atlas, Baked, atlas, bake_normals
 from ._boolean import Combined, boolean
 from ._check import Check, Verdict, check, report
 from ._color import color_by
@@ -37,6 +37,7 @@ __version__: str = _lib.cw_version().decode()
 
 __all__ = [
     "Atlas",
+    "Baked",
     "Check",
     "Combined",
     "Cut",
@@ -60,6 +61,7 @@ __all__ = [
     "Volume",
     "Written",
     "atlas",
+    "bake_normals",
     "boolean",
     "check",
     "color_by",

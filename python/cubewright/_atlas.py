@@ -1,15 +1,20 @@
-"""Texture coordinates: a surface laid flat in a square."""
+"""Texture coordinates: a surface laid flat in a square; and normal maps."""
 
 from __future__ import annotations
 
 from ctypes import byref
 from dataclasses import dataclass
 
+import numpy as np
+import numpy.typing as npt
+
 from . import _declarations as c
 from ._library import lib
+from ._memory import Owner
 from ._mesh import Mesh, take_mesh
-from ._options import take_count, take_number, take_threads
+from ._options import take_count, take_length, take_number, take_threads
 from ._progress import Progress, Reporter
+from ._render import lend_image
 
 
 @dataclass(frozen=True)
@@ -74,4 +79,58 @@ def atlas(
         stretch=facts.stretch,
         coverage=facts.coverage,
         flipped=facts.flipped,
+    )
+
+
+@dataclass(frozen=True)
+class Baked:
+    """A normal map, and facts on it. image is (size, size, 4) uint8, top row first; alpha is 255."""
+
+    image: npt.NDArray[np.uint8]
+    texels: int  # whose middle lies in a triangle
+    missed: int  # of them: those without a surface in reach that faces the same way; they are flat
+    max_distance: float  # mm, that was bridged
+    mean_distance: float
+    mean_angle: float  # degrees between the normals of both surfaces
+
+
+def bake_normals(
+    mesh: Mesh,
+    full: Mesh,
+    *,
+    size: int = 2048,
+    margin: int = 2,
+    reach: float | str = 0.0,
+    threads: int = 0,
+    progress: Progress = None,
+) -> Baked:
+    """Returns a normal map for a mesh from atlas() that has normals: with it the mesh looks as the full
+    one does. Texels take the normal of the nearest point that faces the same way. Write it with
+    write(path, [Part(name, mesh, normal_map=baked.image)]).
+
+    size    texels along each side, 16 to 16384
+    margin  texels around each chart that get the colour beside them, 1 to 64
+    reach   a length: how far the full surface may be; 0: 4 % of the box's diagonal
+
+    The map is in the tangent space of MikkTSpace, green upward, as glTF has it.
+    Raises Error: ARGUMENT, NO_MEMORY, CANCELLED.
+    """
+    low, fine = take_mesh("mesh", mesh), take_mesh("full", full)
+    reporter = Reporter(progress)
+    desc = c.cw_bake_desc(
+        size=take_count("size", size, 16, 16384),
+        margin=take_count("margin", margin, 1, 64),
+        reach_mm=take_length("reach", reach, mesh),
+        threads=take_threads(threads),
+        progress=reporter.struct,
+    )
+    image, facts = Owner(c.cw_image(), lib.cw_image_free), c.cw_bake_facts()
+    reporter.call(lib.cw_bake_normals, byref(low), byref(fine), byref(desc), byref(image.struct), byref(facts))
+    return Baked(
+        image=lend_image(image),
+        texels=facts.texels,
+        missed=facts.missed,
+        max_distance=facts.max_mm,
+        mean_distance=facts.mean_mm,
+        mean_angle=facts.mean_deg,
     )

@@ -251,7 +251,8 @@ class cw_keeps(enum.IntEnum):
     CW_KEEPS_FACE_COLORS = 512
     CW_KEEPS_OPACITY = 1024
     CW_KEEPS_TEXTURE = 2048
-    CW_KEEPS_ALL = 4095
+    CW_KEEPS_PICTURES = 4096
+    CW_KEEPS_ALL = 8191
 
 
 class cw_mode(enum.IntEnum):
@@ -712,6 +713,91 @@ cw_atlas_facts._fields_ = [
     ("stretch", c_double),
     ("coverage", c_double),
     ("flipped", c_size_t),
+]
+
+
+class cw_picture(Structure):
+    width: int
+    height: int
+    pixels: Any
+
+
+cw_picture._fields_ = [
+    ("width", c_size_t),
+    ("height", c_size_t),
+    ("pixels", POINTER(c_float)),
+]
+
+
+class cw_image(Structure):
+    width: int
+    height: int
+    pixels: Any
+
+
+cw_image._fields_ = [
+    ("width", c_size_t),
+    ("height", c_size_t),
+    ("pixels", POINTER(c_uint8)),
+]
+
+
+class cw_comparison(Structure):
+    pixels: int
+    rmse: float
+    max: float
+    bias: float
+    delta_e_mean: float
+    delta_e_p99: float
+    delta_e_max: float
+    ssim: float
+
+
+cw_comparison._fields_ = [
+    ("pixels", c_size_t),
+    ("rmse", c_double),
+    ("max", c_double),
+    ("bias", c_double),
+    ("delta_e_mean", c_double),
+    ("delta_e_p99", c_double),
+    ("delta_e_max", c_double),
+    ("ssim", c_double),
+]
+
+
+class cw_bake_desc(Structure):
+    version: int
+    size: int
+    margin: int
+    reach_mm: float
+    threads: int
+    progress: Any
+
+
+cw_bake_desc._fields_ = [
+    ("version", c_uint32),
+    ("size", c_uint32),
+    ("margin", c_uint32),
+    ("reach_mm", c_double),
+    ("threads", c_int),
+    ("progress", cw_progress),
+]
+
+
+class cw_bake_facts(Structure):
+    texels: int
+    missed: int
+    max_mm: float
+    mean_mm: float
+    mean_deg: float
+
+
+cw_bake_facts._fields_ = [
+    ("texels", c_size_t),
+    ("missed", c_size_t),
+    ("max_mm", c_double),
+    ("mean_mm", c_double),
+    ("mean_deg", c_double),
 ]
 
 
@@ -1937,6 +2023,28 @@ cw_mesh_file._fields_ = [
 ]
 
 
+class cw_texture(Structure):
+    bytes: Any
+    size: int
+
+
+cw_texture._fields_ = [
+    ("bytes", POINTER(c_uint8)),
+    ("size", c_size_t),
+]
+
+
+class cw_textures(Structure):
+    version: int
+    normal: Any
+
+
+cw_textures._fields_ = [
+    ("version", c_uint32),
+    ("normal", cw_texture),
+]
+
+
 class cw_part(Structure):
     mesh: Any
     name: bytes | None
@@ -1946,6 +2054,7 @@ class cw_part(Structure):
     rms_error_mm: float
     time_s: float
     spool: Any
+    textures: Any
 
 
 cw_part._fields_ = [
@@ -1957,6 +2066,7 @@ cw_part._fields_ = [
     ("rms_error_mm", c_double),
     ("time_s", c_double),
     ("spool", POINTER(cw_mesh_spool)),
+    ("textures", POINTER(cw_textures)),
 ]
 
 
@@ -2363,55 +2473,6 @@ cw_hollow_facts._fields_ = [
     ("removed_mm3", c_double),
     ("wall_min_mm", c_double),
     ("wall_max_mm", c_double),
-]
-
-
-class cw_picture(Structure):
-    width: int
-    height: int
-    pixels: Any
-
-
-cw_picture._fields_ = [
-    ("width", c_size_t),
-    ("height", c_size_t),
-    ("pixels", POINTER(c_float)),
-]
-
-
-class cw_image(Structure):
-    width: int
-    height: int
-    pixels: Any
-
-
-cw_image._fields_ = [
-    ("width", c_size_t),
-    ("height", c_size_t),
-    ("pixels", POINTER(c_uint8)),
-]
-
-
-class cw_comparison(Structure):
-    pixels: int
-    rmse: float
-    max: float
-    bias: float
-    delta_e_mean: float
-    delta_e_p99: float
-    delta_e_max: float
-    ssim: float
-
-
-cw_comparison._fields_ = [
-    ("pixels", c_size_t),
-    ("rmse", c_double),
-    ("max", c_double),
-    ("bias", c_double),
-    ("delta_e_mean", c_double),
-    ("delta_e_p99", c_double),
-    ("delta_e_max", c_double),
-    ("ssim", c_double),
 ]
 
 
@@ -3441,6 +3502,19 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "cw_mesh_drop_distant": (c_int, [POINTER(cw_mesh), POINTER(c_float), c_double, POINTER(cw_drop_counts), POINTER(c_double), POINTER(cw_error)]),
     "cw_mesh_atlas": (c_int, [POINTER(cw_mesh), POINTER(cw_atlas_desc), POINTER(cw_atlas_facts), POINTER(cw_error)]),
     "cw_mesh_split_seams": (c_int, [POINTER(cw_mesh), POINTER(cw_error)]),
+    "cw_picture_alloc": (c_int, [POINTER(cw_picture), c_size_t, c_size_t, POINTER(cw_error)]),
+    "cw_picture_free": (None, [POINTER(cw_picture)]),
+    "cw_image_alloc": (c_int, [POINTER(cw_image), c_size_t, c_size_t, POINTER(cw_error)]),
+    "cw_image_free": (None, [POINTER(cw_image)]),
+    "cw_picture_show": (c_int, [POINTER(cw_picture), POINTER(c_uint8 * 4), POINTER(cw_image), POINTER(cw_error)]),
+    "cw_picture_compare": (c_int, [POINTER(cw_picture), POINTER(cw_picture), POINTER(c_float * 3), POINTER(cw_comparison), POINTER(cw_error)]),
+    "cw_picture_difference": (c_int, [POINTER(cw_picture), POINTER(cw_picture), c_double, POINTER(cw_picture), POINTER(cw_error)]),
+    "cw_picture_split": (c_int, [POINTER(cw_picture), POINTER(cw_picture), c_double, POINTER(cw_picture), POINTER(cw_error)]),
+    "cw_image_compare": (c_int, [POINTER(cw_image), POINTER(cw_image), c_int, POINTER(c_size_t), POINTER(cw_error)]),
+    "cw_image_write": (c_int, [c_char_p, POINTER(cw_image), POINTER(cw_error)]),
+    "cw_image_encode": (c_int, [POINTER(cw_image), c_bool, POINTER(POINTER(c_uint8)), POINTER(c_size_t), POINTER(cw_error)]),
+    "cw_bytes_free": (None, [POINTER(c_uint8)]),
+    "cw_bake_normals": (c_int, [POINTER(cw_mesh), POINTER(cw_mesh), POINTER(cw_bake_desc), POINTER(cw_image), POINTER(cw_bake_facts), POINTER(cw_error)]),
     "cw_mesh_boolean": (c_int, [POINTER(POINTER(cw_mesh)), c_size_t, POINTER(cw_boolean_desc), POINTER(cw_mesh), POINTER(cw_boolean_facts), POINTER(cw_error)]),
     "cw_view_name": (c_char_p, [c_size_t]),
     "cw_camera_fit": (c_int, [POINTER(cw_fit_desc), POINTER(cw_camera), POINTER(cw_error)]),
@@ -3603,16 +3677,6 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "cw_level_set_from_mesh": (c_int, [POINTER(cw_mesh), POINTER(cw_level_set_desc), POINTER(cw_volume), POINTER(cw_error)]),
     "cw_mesh_offset": (c_int, [POINTER(cw_mesh), POINTER(cw_offset_desc), POINTER(cw_mesh), POINTER(cw_offset_facts), POINTER(cw_error)]),
     "cw_mesh_hollow": (c_int, [POINTER(cw_mesh), POINTER(cw_hollow_desc), POINTER(cw_mesh), POINTER(cw_hollow_facts), POINTER(cw_error)]),
-    "cw_picture_alloc": (c_int, [POINTER(cw_picture), c_size_t, c_size_t, POINTER(cw_error)]),
-    "cw_picture_free": (None, [POINTER(cw_picture)]),
-    "cw_image_alloc": (c_int, [POINTER(cw_image), c_size_t, c_size_t, POINTER(cw_error)]),
-    "cw_image_free": (None, [POINTER(cw_image)]),
-    "cw_picture_show": (c_int, [POINTER(cw_picture), POINTER(c_uint8 * 4), POINTER(cw_image), POINTER(cw_error)]),
-    "cw_picture_compare": (c_int, [POINTER(cw_picture), POINTER(cw_picture), POINTER(c_float * 3), POINTER(cw_comparison), POINTER(cw_error)]),
-    "cw_picture_difference": (c_int, [POINTER(cw_picture), POINTER(cw_picture), c_double, POINTER(cw_picture), POINTER(cw_error)]),
-    "cw_picture_split": (c_int, [POINTER(cw_picture), POINTER(cw_picture), c_double, POINTER(cw_picture), POINTER(cw_error)]),
-    "cw_image_compare": (c_int, [POINTER(cw_image), POINTER(cw_image), c_int, POINTER(c_size_t), POINTER(cw_error)]),
-    "cw_image_write": (c_int, [c_char_p, POINTER(cw_image), POINTER(cw_error)]),
     "cw_transfer_check": (c_int, [POINTER(cw_transfer), POINTER(cw_error)]),
     "cw_transfer_at": (None, [POINTER(cw_transfer), c_double, POINTER(c_double), POINTER(c_double)]),
     "cw_transfer_gradient_factor": (c_double, [POINTER(cw_transfer), c_double]),

@@ -8,6 +8,9 @@ from ctypes import POINTER, byref, c_char_p, c_size_t, pointer, string_at
 from dataclasses import dataclass
 from typing import Any, Union
 
+import numpy as np
+import numpy.typing as npt
+
 from . import _declarations as c
 from ._errors import call, name_keywords
 from ._library import lib
@@ -173,12 +176,14 @@ def read_volume(
 class Part:
     """A mesh of a file with several, under its name. label has the colour that the file states for it.
 
-    Other colours are those of mesh.colors and mesh.face_colors.
+    Other colours are those of mesh.colors and mesh.face_colors. normal_map is (height, width, 4) uint8, as
+    bake_normals() makes it; glTF holds it for a mesh with texture coordinates. It is written, not read.
     """
 
     name: str | None
     mesh: Mesh
     label: Label | None = None
+    normal_map: npt.NDArray[np.uint8] | None = None
 
 
 def make_mesh_desc(options: dict[str, Any], reporter: Reporter) -> c.cw_mesh_read_desc:

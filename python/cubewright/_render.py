@@ -217,6 +217,12 @@ def lend_image(owner: Owner[c.cw_image]) -> npt.NDArray[np.uint8]:
 
 def write_png(path: Path, picture: npt.NDArray[np.uint8]) -> None:
     """Writes a picture of (height, width, 4) or (height, width, 3) uint8 as a PNG."""
+    image, _pixels = borrow_image(picture)
+    call(lib.cw_image_write, take_path("path", path), byref(image))
+
+
+def borrow_image(picture: npt.NDArray[np.uint8]) -> tuple[c.cw_image, npt.NDArray[np.uint8]]:
+    """Returns a struct of a picture, and the array whose memory it has."""
     pixels = np.asarray(picture)
     if pixels.dtype != np.uint8 or pixels.ndim != 3 or pixels.shape[2] not in (3, 4):
         raise ValueError(
@@ -227,4 +233,4 @@ def write_png(path: Path, picture: npt.NDArray[np.uint8]) -> None:
     pixels = np.ascontiguousarray(pixels)
     image = c.cw_image(width=pixels.shape[1], height=pixels.shape[0])
     image.pixels = pixels.ctypes.data_as(POINTER(c_uint8))
-    call(lib.cw_image_write, take_path("path", path), byref(image))
+    return image, pixels

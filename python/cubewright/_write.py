@@ -3,16 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from ctypes import POINTER, byref, c_char, cast, create_string_buffer, pointer
+from ctypes import POINTER, byref, c_char, c_size_t, c_uint8, cast, create_string_buffer, pointer, string_at
 from dataclasses import dataclass
 from typing import Any, Union
 
+import numpy as np
+import numpy.typing as npt
+
 from . import _declarations as c
+from ._errors import call
 from ._library import lib
 from ._mesh import Mesh, take_mesh
 from ._options import take_choice, take_count, take_flag, take_length, take_path, take_text
 from ._progress import Progress, Reporter
 from ._read import UNITS, Part, Path
+from ._render import borrow_image
 from ._volume import Volume
 
 COMPRESSIONS = ("none", "quantize", "draco", "meshopt")
@@ -85,7 +90,8 @@ def write(
                 of a vertex, mm (default 1/20,000 of the diagonal), bits a number in its place
     effort      effort of Draco, 1 to 10; 0: 7
 
-    No format holds mesh.attributes but face_colors: they are left out.
+    Of mesh.attributes glTF and OBJ hold texture_coordinates, and some formats face_colors; others are left
+    out. A Part may have a normal_map, for glTF.
 
     Raises Error: ARGUMENT, OUTPUT, UNSUPPORTED, LIMIT, CHECK, NO_MEMORY, CANCELLED.
     """
@@ -118,6 +124,8 @@ def fill_part(part: c.cw_part, given: Part) -> None:
         raise TypeError(f"a list of Part can be written, not of {type(given).__name__}")
     part.mesh = pointer(take_mesh(f"the mesh of part {given.name!r}", given.mesh))
     part.name = take_text("a part's name", given.name)
+    if given.normal_map is not None:
+        part.textures = pointer(c.cw_textures(normal=encode_picture(given.normal_map)))
     if given.label is None:
         return
     label = c.cw_label(value=given.label.value, layer=given.label.layer)
@@ -128,6 +136,16 @@ def fill_part(part: c.cw_part, given: Part) -> None:
         label.has_color = True
         label.color[:] = given.label.color
     part.label = pointer(label)
+
+
+def encode_picture(picture: npt.NDArray[np.uint8]) -> c.cw_texture:
+    """Makes a PNG of numbers, which are no colours, in memory of Python's."""
+    image, _pixels = borrow_image(picture)
+    data, size = POINTER(c_uint8)(), c_size_t()
+    call(lib.cw_image_encode, byref(image), False, byref(data), byref(size))
+    kept = create_string_buffer(string_at(data, size.value), size.value)
+    lib.cw_bytes_free(data)
+    return c.cw_texture(bytes=cast(kept, POINTER(c_uint8)), size=size.value)
 
 
 def summarize(r: c.cw_compressed) -> Written:

@@ -6,6 +6,7 @@
 #include "core/base/status.h"
 #include "core/mesh/corner_table.h"
 #include "core/mesh/mesh_attributes.h"
+#include "core/texture/split_seams.h"
 #include "simplify/atlas/pack_charts.h"
 
 #include <math.h>
@@ -175,7 +176,6 @@ static void find_facts(const charting *c, const cwi_atlas_packing *p, const floa
         for (size_t t = 0; t < chart->triangles; t++)
             area += chart->area[t];
         stretch += area * chart->stretch * chart->stretch;
-        facts->vertices += chart->vertices;
     }
     facts->stretch = sqrt(stretch / sheet->area);
     for (size_t t = 0; t < sheet->mesh->triangle_count; t++) {
@@ -188,6 +188,15 @@ static void find_facts(const charting *c, const cwi_atlas_packing *p, const floa
         if (twin != CWI_NO_CORNER && twin > corner)
             facts->seams += !is_joined(uv, (uint32_t)corner, twin);
     }
+}
+
+static cw_status count_vertices(const cw_mesh *mesh, cw_atlas_facts *facts, cw_error *err)
+{
+    cwi_texture_seams seams;
+    cw_status st = cwi_seams_find(mesh, &seams, err);
+    facts->vertices = seams.count;
+    cwi_seams_free(&seams);
+    return st;
 }
 
 static cw_status add_coordinates(cw_mesh *mesh, float (**uv)[2], cw_error *err)
@@ -241,8 +250,10 @@ static cw_status pack_and_set(cw_mesh *mesh, const charting *c, const cw_atlas_d
         st = add_coordinates(mesh, &uv, err);
     if (st == CW_OK) {
         set_coordinates(c, &packing, uv);
-        if (facts)
+        if (facts) {
             find_facts(c, &packing, (const float(*)[2])uv, facts);
+            st = count_vertices(mesh, facts, err);
+        }
     }
     cwi_free(packing.places);
     return st;

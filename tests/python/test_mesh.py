@@ -2,9 +2,11 @@
 
 import gc
 import sys
+import tempfile
 import types
 import unittest.mock
 import weakref
+from pathlib import Path
 
 import cubewright as cw
 import numpy as np
@@ -181,6 +183,29 @@ class Coordinates(Case):
                 cw.atlas(ball, **wrong)
         with self.fails(cw.Status.CANCELLED):
             cw.atlas(ball, progress=lambda *_: False)
+
+    def test_normal_maps_are_baked_and_written(self):
+        low = cw.atlas(cw.extract(make_ball(), 0), size=256).mesh
+        self.assertIsNotNone(low.normals)
+        baked = cw.bake_normals(low, low, size=256, threads=2)
+        self.assertEqual((baked.image.shape, baked.missed), ((256, 256, 4), 0))
+        self.assertLess(np.abs(baked.image.astype(int) - (128, 128, 255, 255)).max(), 2)
+        self.assertGreater(baked.texels, 0.3 * 256**2)
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / "a.glb"
+            try:
+                cw.write(path, [cw.Part("low", low, normal_map=baked.image)])
+            except cw.Error as error:
+                self.assertEqual(error.status, cw.Status.UNSUPPORTED)
+            else:
+                data = path.read_bytes()
+                self.assertIn(b'"normalTexture"', data)
+                self.assertIn(b"\x89PNG", data)
+        self.assertRaises(ValueError, lambda: cw.bake_normals(low, low, size=8))
+        with self.fails(cw.Status.ARGUMENT):
+            cw.bake_normals(cw.extract(make_ball(), 0), low)
+        with self.fails(cw.Status.CANCELLED):
+            cw.bake_normals(low, low, size=64, progress=lambda *_: False)
 
     def test_volumes_color_meshes(self):
         ball = make_ball()

@@ -35,3 +35,18 @@ cubewright uv t.ply -o e.glb --texel-density -1
 echo $?
 ls e.glb 2>/dev/null
 cubewright help --search unwrap | head -n 3
+
+# a normal map of a finer mesh, in the file with tangents; other formats hold none
+cubewright make torus -o f.nrrd --dims 64 -q
+cubewright extract f.nrrd --iso 0 -o full.ply -q
+cubewright uv t.ply --bake full.ply --atlas 256 -o n.glb --json n.json -q
+strings -n 4 n.glb | grep -o -e 'TANGENT' -e '"normalTexture":{"index":0}' -e 'image/png'
+sed -n -e '/"normal_map": {/,/}/p' n.json
+for t in 1 4; do cubewright uv t.ply --bake full.ply --atlas 256 -o n$t.glb --name n -t $t -q; done
+cmp n1.glb n4.glb && echo "same"
+cubewright uv t.ply --bake full.ply -o n.obj
+echo $?
+cubewright uv t.ply --reach 1mm -o n.glb
+echo $?
+cubewright uv t.ply --bake nothing.ply -o n.glb
+echo $?

@@ -1,7 +1,7 @@
 /* Texture coordinates in written files: glTF and OBJ keep them, also compressed and with colours. */
 #include "support/meshes.h"
 
-#include "core/mesh/split_seams.h"
+#include "core/texture/split_seams.h"
 
 #include <cubewright/atlas.h>
 
@@ -173,6 +173,49 @@ static void coordinates_of_vertices_are_written_as_they_are(void **state)
     free_textured(&cube);
 }
 
+/* A normal map is in the file once, with tangents where no Draco is, and needs coordinates. */
+static void normal_maps_are_embedded(void **state)
+{
+    (void)state;
+    static const uint8_t png[] = {0x89, 'P', 'N', 'G', 13, 10, 26, 10, 1, 2, 3};
+    const cw_textures textures = {.normal = {png, sizeof png}};
+    cw_error err = {0};
+    cw_write_loss loss;
+    cw_mesh cube;
+    make_textured(&cube);
+    assert_ok(cw_mesh_normals(&cube, &err), err);
+    const cw_part parts[] = {{.mesh = &cube, .name = "a", .textures = &textures},
+                             {.mesh = &cube, .name = "b", .textures = &textures},
+                             {.mesh = &cube, .name = "c"}};
+    for (cw_compression kind = CW_COMPRESS_NONE; kind <= CW_COMPRESS_MESHOPT; kind++) {
+        const cw_write_desc desc = {.compression = kind};
+        const cw_status st = cw_parts_write(test_path("n.glb"), parts, 3, &desc, &err);
+        if (st == CW_ERR_UNSUPPORTED)
+            continue;
+        assert_ok(st, err);
+        size_t size;
+        char *file = test_file_read(test_path("n.glb"), &size), *json = file + 20;
+        const size_t length = (size_t)(unsigned char)file[12] | (size_t)(unsigned char)file[13]
+                                                                    << 8;
+        json[length - 1] = 0;
+        assert_int_equal(count_words(json, "\"normalTexture\""), 2);
+        assert_int_equal(count_words(json, "image/png"), 1);
+        assert_int_equal(count_words(json, "\"TANGENT\""), kind == CW_COMPRESS_DRACO ? 0 : 2);
+        assert_memory_equal(file + size - 12, png, sizeof png); /* the last of the buffer */
+        free(file);
+    }
+    if (cw_mesh_format("n.glb", NULL)->in_this_build) {
+        assert_ok(cw_parts_write_loss("n.glb", parts, 3, NULL, &loss, &err), err);
+        assert_int_equal(loss.dropped & CW_KEEPS_PICTURES, 0);
+        cw_mesh_attribute_remove(&cube, CW_TEXTURE_COORDINATES);
+        assert_ok(cw_parts_write_loss("n.glb", parts, 1, NULL, &loss, &err), err);
+        assert_int_equal(loss.dropped & CW_KEEPS_PICTURES, CW_KEEPS_PICTURES);
+    }
+    assert_ok(cw_parts_write_loss("n.obj", parts, 1, NULL, &loss, &err), err);
+    assert_int_equal(loss.dropped & CW_KEEPS_PICTURES, CW_KEEPS_PICTURES);
+    free_textured(&cube);
+}
+
 static void other_formats_tell_what_they_lose(void **state)
 {
     (void)state;
@@ -214,6 +257,8 @@ int main(void)
                                         test_folder_make, test_folder_remove),
         cmocka_unit_test_setup_teardown(coordinates_of_vertices_are_written_as_they_are,
                                         test_folder_make, test_folder_remove),
+        cmocka_unit_test_setup_teardown(normal_maps_are_embedded, test_folder_make,
+                                        test_folder_remove),
         cmocka_unit_test(other_formats_tell_what_they_lose),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

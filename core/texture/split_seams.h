@@ -1,6 +1,6 @@
 /* Vertices with one texture coordinate each. */
-#ifndef CORE_MESH_SPLIT_SEAMS_H
-#define CORE_MESH_SPLIT_SEAMS_H
+#ifndef CORE_TEXTURE_SPLIT_SEAMS_H
+#define CORE_TEXTURE_SPLIT_SEAMS_H
 
 #include <cubewright/mesh.h>
 

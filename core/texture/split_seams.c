@@ -1,5 +1,5 @@
 /* Gives each vertex one texture coordinate. */
-#include "core/mesh/split_seams.h"
+#include "core/texture/split_seams.h"
 
 #include "core/base/memory.h"
 #include "core/base/status.h"

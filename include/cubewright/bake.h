@@ -1,0 +1,57 @@
+/* Baking: detail of a full mesh as a texture of a mesh with fewer triangles. */
+#ifndef CUBEWRIGHT_BAKE_H
+#define CUBEWRIGHT_BAKE_H
+
+#include <cubewright/mesh.h>
+#include <cubewright/picture.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Settings of a bake. Zero-initialise the struct and set what you need; a zero field means the default
+ * named beside it. */
+typedef struct cw_bake_desc {
+    uint32_t version; /* 0: the first version of this struct */
+    uint32_t size;    /* texels along each side, 16 to 16384; default: 2048 */
+    uint32_t margin;  /* texels around each chart that get the colour beside them; default: 2 */
+    double reach_mm;  /* how far the full surface may be; default: 4 % of the box's diagonal */
+    int threads;      /* default: one per processor */
+    cw_progress progress; /* default: none */
+} cw_bake_desc;
+
+/* Facts on a finished bake. */
+typedef struct cw_bake_facts {
+    size_t texels; /* whose middle lies in a triangle */
+    size_t
+        missed; /* of them: those from which no surface that faces the same way is in reach */
+    double max_mm;   /* the largest distance that was bridged, and */
+    double mean_mm;  /* the mean */
+    double mean_deg; /* the mean angle between the normals of both surfaces */
+} cw_bake_facts;
+
+/* Bakes the normals of a full surface into a normal map in the tangent space of [Mikkelsen2008], as glTF
+ * has it: red along the tangent, green upward in the image, blue outward.
+ *
+ * Each texel takes the normal of the nearest point of the full surface that faces the same way, not the one
+ * along a ray: there is no cage to get wrong. Texels that miss are flat.
+ *
+ * mesh   has texture coordinates (cw_mesh_atlas()), and normals, which must be those that are written with
+ *        it; borrowed
+ * full   borrowed; without normals, those of its triangles are averaged at vertices
+ * desc   borrowed; NULL means all defaults
+ * image  allocated and filled on success; free it with cw_image_free()
+ * facts  may be NULL
+ *
+ * Returns  CW_ERR_ARGUMENT  no texture coordinates or normals; an empty full mesh; a setting out of its
+ *                           range
+ *          CW_ERR_CANCELLED, CW_ERR_NO_MEMORY; or as cw_mesh_check() */
+CW_API CW_NODISCARD cw_status cw_bake_normals(const cw_mesh *mesh, const cw_mesh *full,
+                                              const cw_bake_desc *desc, cw_image *image,
+                                              cw_bake_facts *facts, cw_error *err);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif
