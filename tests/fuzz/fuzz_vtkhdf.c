@@ -1,0 +1,11 @@
+/* Fuzzes the volume reader of VTKHDF files. */
+#define _GNU_SOURCE /* memfd_create */
+#include "fuzz_reader.h"
+
+/* In this process, where the fuzzer sees what happens. */
+int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size)
+{
+    const cw_read_desc desc = {
+        .reader = "vtkhdf", .max_bytes = (uint64_t)64 << 20, .no_sandbox = true};
+    return fuzz_with(&desc, bytes, size);
+}
