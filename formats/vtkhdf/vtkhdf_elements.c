@@ -369,16 +369,16 @@ static cw_status put_part(parts *p, uint64_t part, cw_error *err)
         fprintf(xml, " %s=\"%" PRIu64 "\"", p->kinds[n].attribute, p->kinds[n].counts[part]);
     }
     fprintf(xml, ">");
-    cw_status st = put_values(p, false, points, err);
-    if (st == CW_OK)
-        st = put_values(p, true, all, err);
     fprintf(xml, "<Points>");
-    if (st == CW_OK)
-        st = put_named(p, "", "Points", "Points", 3, p->point, points, err);
+    cw_status st = put_named(p, "", "Points", "Points", 3, p->point, points, err);
     fprintf(xml, "</Points>");
     p->point += points;
     for (size_t n = 0; n < p->kind_count && st == CW_OK; n++)
         st = put_cells(p, &p->kinds[n], part, err);
+    if (st == CW_OK)
+        st = put_values(p, false, points, err);
+    if (st == CW_OK)
+        st = put_values(p, true, all, err);
     fprintf(xml, "</Piece>");
     return st;
 }

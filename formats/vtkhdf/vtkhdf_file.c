@@ -5,6 +5,7 @@
 #include "core/base/status.h"
 #include "formats/mesh/mesh_writer.h"
 #include "formats/mesh/place_parts.h"
+#include "formats/vtkhdf/vtkhdf_format.h"
 
 #include <stdarg.h>
 #include <string.h>
@@ -106,6 +107,17 @@ static cw_status take_facts(cwi_vtkhdf *h, cw_error *err)
     return check_type(h, err);
 }
 
+static cw_status check_signature(const cwi_input *in, cw_error *err)
+{
+    unsigned char head[8];
+    size_t size;
+    cw_status st = cwi_input_read_at(in->fd, 0, head, sizeof head, &size, err);
+    return st == CW_OK && !cwi_vtkhdf_sniff(head, size)
+               ? cwi_fail(err, CW_ERR_FORMAT,
+                          "it is no HDF5 file: it does not start with the signature of one")
+               : st;
+}
+
 cw_status cwi_vtkhdf_open(cwi_vtkhdf *h, const cwi_input *in, const cw_read_desc *desc,
                           cw_error *err)
 {
@@ -113,7 +125,9 @@ cw_status cwi_vtkhdf_open(cwi_vtkhdf *h, const cwi_input *in, const cw_read_desc
     h->desc = desc;
     cw_read_desc boxed = *desc;
     boxed.max_bytes = 0; /* chunks that are being decoded do not depend on the array's size */
-    cw_status st = cwi_planes_open(&h->planes, "hdf5", "HDF5", &boxed, err);
+    cw_status st = check_signature(in, err);
+    if (st == CW_OK)
+        st = cwi_planes_open(&h->planes, "hdf5", "HDF5", &boxed, err);
     h->planes.box.progress = &desc->progress;
     return st == CW_OK ? take_facts(h, err) : st;
 }

@@ -1,12 +1,10 @@
-/* VTKHDF: images, grids and surfaces in HDF5 files that the library itself writes. */
+/* VTKHDF: images and grids in HDF5 files that the library itself writes. */
 #include "core/base/module.h"
 #include "support/files/hdf5_file.h"
 #include "support/files/reading.h"
 #include "support/files/regions.h"
 
 #if CW_TEST_HDF5
-
-#include <math.h>
 
 enum { NX = 7, NY = 5, NZ = 6, VOXELS = NX * NY * NZ, NOTES = 2000 };
 
@@ -390,140 +388,7 @@ static void the_first_step_of_a_grid_is_read(void **state)
     cw_volume_free(&v);
 }
 
-/* --- surfaces ----------------------------------------------------------------------------- */
-
-/* A box without ends along x in each of `parts`, the first and last closed: of polygons of 4
- * corners and, for the first end, a strip. */
-static void put_surface(const char *name, size_t parts, hdf5_layout layout, hdf5_file *f)
-{
-    static const char *const kinds[4] = {"Vertices", "Lines", "Polygons", "Strips"};
-    static const double faces[5][4] = {
-        {0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4}, {2, 3, 7, 6}, {1, 2, 6, 5}};
-    static const double strip[4] = {0, 4, 3, 7};
-    double points[3 * 8 * 4], corners[4 * 20], ends[30], colors[4 * 8 * 3], counts[4],
-        id_counts[4], eights[4];
-    const double none[4] = {0, 0, 0, 0}, one[4] = {1, 0, 0, 0}, four[4] = {4, 0, 0, 0};
-    size_t corner = 0, end = 0;
-    for (size_t p = 0; p < parts; p++) {
-        const size_t count = p + 1 == parts ? 5 : 4;
-        for (size_t n = 0; n < 8; n++) {
-            points[3 * (8 * p + n)] = (double)p + (n % 4 == 1 || n % 4 == 2);
-            points[3 * (8 * p + n) + 1] = n % 4 > 1;
-            points[3 * (8 * p + n) + 2] = n > 3;
-        }
-        ends[end++] = 0;
-        for (size_t n = 0; n < count; n++) {
-            memcpy(corners + corner, faces[n], sizeof faces[n]);
-            corner += 4;
-            ends[end++] = 4.0 * (double)(n + 1);
-        }
-        counts[p] = (double)count;
-        id_counts[p] = 4.0 * (double)count;
-        eights[p] = 8;
-    }
-    for (size_t n = 0; n < 3 * 8 * parts; n++)
-        colors[n] = (double)(n % 250);
-    hdf5_start(f, name, "PolyData");
-    put_row(f, "NumberOfPoints", H5T_STD_I64LE, parts, eights, (hdf5_layout){0});
-    hdf5_put(f, "Points", H5T_IEEE_F32LE, 2, (hsize_t[]){8 * parts, 3}, points,
-             (hdf5_layout){.chunk = {layout.chunk[0], 3}, .deflate = layout.deflate});
-    for (int k = 0; k < 4; k++) {
-        char text[60];
-        const bool polygons = k == 2, strips = k == 3;
-        hdf5_add_group(f, kinds[k]);
-        snprintf(text, sizeof text, "%s/NumberOfCells", kinds[k]);
-        put_row(f, text, H5T_STD_I64LE, parts,
-                polygons ? counts
-                : strips ? one
-                         : none,
-                (hdf5_layout){0});
-        snprintf(text, sizeof text, "%s/NumberOfConnectivityIds", kinds[k]);
-        put_row(f, text, H5T_STD_I64LE, parts,
-                polygons ? id_counts
-                : strips ? four
-                         : none,
-                (hdf5_layout){0});
-        snprintf(text, sizeof text, "%s/Connectivity", kinds[k]);
-        put_row(f, text, H5T_STD_I32LE,
-                polygons ? corner
-                : strips ? 4
-                         : 0,
-                polygons ? corners : strip, (hdf5_layout){0});
-        snprintf(text, sizeof text, "%s/Offsets", kinds[k]);
-        put_row(f, text, H5T_STD_I64LE,
-                polygons ? end
-                : strips ? 1 + parts
-                         : parts,
-                polygons ? ends
-                : strips ? (double[]){0, 4, 0, 0, 0}
-                         : none,
-                (hdf5_layout){0});
-    }
-    hdf5_add_group(f, "PointData");
-    hdf5_put(f, "PointData/rgb", H5T_STD_U8LE, 2, (hsize_t[]){8 * parts, 3}, colors,
-             (hdf5_layout){.chunk = {layout.chunk[0], 2}, .deflate = layout.deflate});
-    put_row(f, "PointData/h", H5T_IEEE_F32LE, 8 * parts, points, layout);
-}
-
-/* Volume by tetrahedra to the origin: that of a closed surface which is oriented alike everywhere. */
-static double volume_of(const cw_mesh *mesh)
-{
-    double sum = 0;
-    for (size_t n = 0; n < mesh->triangle_count; n++) {
-        const float *a = mesh->positions + 3 * (size_t)mesh->triangles[3 * n],
-                    *b = mesh->positions + 3 * (size_t)mesh->triangles[3 * n + 1],
-                    *c = mesh->positions + 3 * (size_t)mesh->triangles[3 * n + 2];
-        sum +=
-            (double)(a[0] * (b[1] * c[2] - b[2] * c[1]) - a[1] * (b[0] * c[2] - b[2] * c[0]) +
-                     a[2] * (b[0] * c[1] - b[1] * c[0]));
-    }
-    return sum / 6;
-}
-
-static void surfaces_in_partitions_are_one(void **state)
-{
-    (void)state;
-    for (size_t parts = 1; parts < 4; parts++)
-        for (int inside = 0; inside < 2; inside++) {
-            hdf5_file f;
-            cw_mesh mesh;
-            cw_mesh_file facts;
-            cw_error err = {0};
-            put_surface("a.vtkhdf", parts,
-                        parts == 2 ? (hdf5_layout){.chunk = {5}, .deflate = true}
-                                   : (hdf5_layout){0},
-                        &f);
-            hdf5_end(&f);
-            const cw_mesh_read_desc desc = {.no_sandbox = inside};
-            assert_ok(cw_mesh_read(test_path("a.vtkhdf"), &desc, &mesh, &facts, &err), err);
-            assert_string_equal(facts.format, "vtkhdf");
-            assert_int_equal(mesh.triangle_count, 8 * parts + 4);
-            assert_int_equal(mesh.vertex_count, 4 * parts + 4);
-            assert_near(fabs(volume_of(&mesh)), (double)parts, 1e-6);
-            assert_non_null(mesh.colors);
-            assert_int_equal(mesh.colors[4], 3);
-            assert_non_null(mesh.scalars);
-            cw_mesh_free(&mesh);
-        }
-}
-
-static void volumes_and_meshes_name_each_other(void **state)
-{
-    (void)state;
-    hdf5_file f;
-    cw_volume v;
-    cw_mesh mesh;
-    cw_error err = {0};
-    put_surface("s.vtkhdf", 1, (hdf5_layout){0}, &f);
-    hdf5_end(&f);
-    assert_fails(read_with("s.vtkhdf", (cw_read_desc){0}, &v, &err), CW_ERR_FORMAT,
-                 "this is a mesh (vtkhdf), not a volume", err);
-    start_image(&f, "v.vtkhdf");
-    put_field(&f, "PointData/p", H5T_IEEE_F32LE, (hdf5_layout){0});
-    hdf5_end(&f);
-    assert_fails(cw_mesh_read(test_path("v.vtkhdf"), NULL, &mesh, NULL, &err), CW_ERR_FORMAT,
-                 "its 'Type' is ImageData, a volume (vtkhdf), not a mesh", err);
-}
+/* --- memory ------------------------------------------------------------------------------- */
 
 static void running_out_of_memory_is_an_error(void **state)
 {
@@ -554,8 +419,6 @@ int main(void)
         TEST(partitions_of_grids_are_joined),
         TEST(hidden_cells_are_left_out),
         TEST(the_first_step_of_a_grid_is_read),
-        TEST(surfaces_in_partitions_are_one),
-        TEST(volumes_and_meshes_name_each_other),
         TEST(running_out_of_memory_is_an_error),
     };
     if (!cwi_module_present("hdf5")) {

@@ -290,7 +290,7 @@ static void grids_that_lie_are_refused(void **state)
          1,
          {9e18},
          "number 0 of the array 'NumberOfPoints'"},
-        {"NumberOfPoints", H5T_STD_I64LE, 1, 1, 1, {1e15}, "'PointData/p' has 4 rows"},
+        {"NumberOfPoints", H5T_STD_I64LE, 1, 1, 1, {1e15}, "'Points' has 4 rows"},
         {"NumberOfPoints", H5T_STD_I64LE, 1, 0, 1, {0}, "'NumberOfPoints' lists no partition"},
         {"NumberOfPoints", H5T_IEEE_F32LE, 1, 1, 1, {4}, "'NumberOfPoints' has 1 real numbers"},
         {"NumberOfCells", H5T_STD_I64LE, 1, 1, 1, {2}, "rows 1 to 3 were expected"},
@@ -361,8 +361,7 @@ static void other_content_is_refused(void **state)
     hdf5_file f;
     cw_error err = {0};
     test_file_write(test_path("text.vtkhdf"), "no HDF5", 7);
-    assert_fails(read_file("text.vtkhdf", &err), CW_ERR_FORMAT, "the head of the HDF5 file",
-                 err);
+    assert_fails(read_file("text.vtkhdf", &err), CW_ERR_FORMAT, "it is no HDF5 file", err);
     hdf5_start(&f, "plain.h5", NULL);
     assert_true(H5Lmove(f.file, "VTKHDF", f.file, "data", H5P_DEFAULT, H5P_DEFAULT) >= 0);
     hdf5_end(&f);
