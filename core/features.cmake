@@ -301,6 +301,25 @@ int main(void)
 }
 ]])
 
+# Debian has a serial library and others for MPI, in folders beside each other: the serial one is taken.
+if(CUBEWRIGHT_HDF5)
+  find_path(HDF5_INCLUDE hdf5.h PATH_SUFFIXES hdf5/serial)
+  find_library(HDF5_LIBRARY NAMES hdf5_serial hdf5)
+endif()
+add_feature(hdf5 OPTION CUBEWRIGHT_HDF5 PACKAGES libhdf5-dev SHIPPED cubewright-modules MODULE hdf5
+  ABOUT "VTKHDF volumes and surfaces, through HDF5"
+  COST "reads no VTKHDF"
+  LICENCES "HDF5 (BSD-3-Clause)"
+  NEEDS HDF5_INCLUDE=libhdf5-dev HDF5_LIBRARY=libhdf5-dev
+  INCLUDES ${HDF5_INCLUDE} LIBRARIES ${HDF5_LIBRARY}
+  TRIAL [[
+#include <hdf5.h>
+int main(void)
+{
+    return H5open() < 0;
+}
+]])
+
 if(CUBEWRIGHT_ISAL)
   find_path(ISAL_INCLUDE isa-l/igzip_lib.h)
   find_library(ISAL_LIBRARY isal)

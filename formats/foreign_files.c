@@ -4,6 +4,7 @@
 #include "core/base/status.h"
 #include "formats/bytes/file_pattern.h"
 #include "formats/bytes/zip_read.h"
+#include "formats/vtkhdf/vtkhdf_format.h"
 
 #include <string.h>
 
@@ -18,8 +19,6 @@ static const struct {
      "an Imaris file, which is not read: Bio-Formats ('bfconvert', Fiji) makes OME-TIFF of it"},
     {NULL, 0, ".czi .nd2 .lif .oib .oif .vsi .lsm",
      "a file of a microscope, which is not read: Bio-Formats ('bfconvert', Fiji) makes OME-TIFF of it"},
-    {NULL, 0, ".vtkhdf .hdf",
-     "a VTKHDF file, which is not read: ParaView saves it as .vti or .vtu"},
     {"\x89HDF\r\n\x1a\n", 8, NULL,
      "an HDF5 file, which is not read: h5py and 'numpy.save' make .npy of one of its arrays"},
     {"CDF\1", 4, ".nc",
@@ -93,6 +92,9 @@ cw_status cwi_refuse_content(const cwi_input *in, const unsigned char *head, siz
             err, CW_ERR_FORMAT,
             "this is a zip archive, which is not read: unpack it, and name the file or "
             "folder in it");
+    if (cwi_vtkhdf_is_other(in, head, size))
+        return cwi_fail(err, CW_ERR_UNSUPPORTED, "this is %s",
+                        cwi_name_foreign(in->path, head, size));
     if (is_utf16(head, size))
         return cwi_fail(
             err, CW_ERR_FORMAT,

@@ -4,7 +4,8 @@
 
 #include "formats/bytes/input_file.h"
 
-/* Refuses a file whose content is known and not read: a zip archive that is no 3MF, text in UTF-16.
+/* Refuses a file whose content is known and not read: a zip archive that is no 3MF, HDF5
+ * that is no VTKHDF, text in UTF-16.
  * head  the first bytes, size of them */
 CW_NODISCARD cw_status cwi_refuse_content(const cwi_input *in, const unsigned char *head,
                                           size_t size, cw_error *err);

@@ -18,6 +18,7 @@ name_library() {
     libdcm* | libof*) echo DCMTK ;;
     libopenjp2.*) echo OpenJPEG ;;
     libmpi.*) echo Open MPI ;;
+    libhdf5_serial.*) echo HDF5 ;;
     *) echo "$1" | sed 's/^lib//; s/Core\.so.*//; s/-[0-9_]*\.so.*//; s/\.so.*//' ;;
     esac
 }

@@ -1,4 +1,4 @@
-/* Runs the modules dicom, tiff, picture and openvdb in sandboxed processes, and reads facts and planes
+/* Runs the modules dicom, tiff, picture, hdf5 and openvdb in sandboxed processes, and reads facts and planes
  * from them. */
 #include "formats/volume/sandboxed_planes.h"
 
@@ -10,7 +10,7 @@
 #include <string.h>
 
 /* Modules that a child process has loaded successfully, in the order of the names. */
-static const char *const names[] = {"dicom", "tiff", "picture", "openvdb"};
+static const char *const names[] = {"dicom", "tiff", "picture", "hdf5", "openvdb"};
 enum { MODULES = sizeof names / sizeof *names };
 static atomic_bool survived[MODULES];
 

@@ -1,5 +1,5 @@
 /* Planes of pixels that a library in a sandboxed process reads from files: the common interface
- * of the modules "tiff", "picture", "dicom" and "openvdb". */
+ * of the modules "tiff", "picture", "hdf5", "dicom" and "openvdb". */
 #ifndef FORMATS_VOLUME_SANDBOXED_PLANES_H
 #define FORMATS_VOLUME_SANDBOXED_PLANES_H
 
