@@ -50,6 +50,7 @@ CW_EXTRACT_MAX_SNAP = 0.5
 CW_FACE_COLORS = 'face_colors'
 CW_FEM_MAX_ASPECT = 10.0
 CW_FEM_MIN_ANGLE_DEG = 10.0
+CW_HANDLE_FRACTION = 0.03
 CW_NEEDLE_RATIO = 20.0
 CW_PRINT_MAX_MM = 400.0
 CW_PRINT_MIN_MM = 5.0
@@ -2049,6 +2050,52 @@ cw_format._fields_ = [
 ]
 
 
+class cw_close_handles_desc(Structure):
+    version: int
+    length_mm: float
+    threads: int
+    progress: Any
+
+
+cw_close_handles_desc._fields_ = [
+    ("version", c_uint32),
+    ("length_mm", c_double),
+    ("threads", c_int),
+    ("progress", cw_progress),
+]
+
+
+class cw_close_handles_facts(Structure):
+    length_mm: float
+    genus_before: int
+    genus_after: int
+    cut: int
+    filled: int
+    left_long: int
+    left_crossing: int
+    change_mm: float
+    triangles_before: int
+    triangles_after: int
+    components_before: int
+    components_after: int
+
+
+cw_close_handles_facts._fields_ = [
+    ("length_mm", c_double),
+    ("genus_before", c_size_t),
+    ("genus_after", c_size_t),
+    ("cut", c_size_t),
+    ("filled", c_size_t),
+    ("left_long", c_size_t),
+    ("left_crossing", c_size_t),
+    ("change_mm", c_double),
+    ("triangles_before", c_size_t),
+    ("triangles_after", c_size_t),
+    ("components_before", c_size_t),
+    ("components_after", c_size_t),
+]
+
+
 class cw_hard(Structure):
     name: bytes | None
     about: bytes | None
@@ -3519,6 +3566,7 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "cw_mesh_format": (POINTER(cw_format), [c_char_p, c_char_p]),
     "cw_volume_format": (POINTER(cw_format), [c_char_p, c_char_p]),
     "cw_formats": (POINTER(cw_format), [POINTER(c_size_t)]),
+    "cw_mesh_close_handles": (c_int, [POINTER(cw_mesh), POINTER(cw_close_handles_desc), POINTER(cw_close_handles_facts), POINTER(cw_error)]),
     "cw_hard_at": (POINTER(cw_hard), [c_size_t]),
     "cw_hard_find": (c_bool, [c_char_p, POINTER(c_size_t)]),
     "cw_hard_stored": (c_double, [c_size_t, c_int, c_double]),
