@@ -38,7 +38,7 @@ typedef struct cw_close_handles_facts {
         components_after; /* the same, of the result: as many, since no cut separates anything */
 } cw_close_handles_facts;
 
-/* Closes the small handles and tunnels of a mesh: changes its topology, which simplification keeps.
+/* Makes a mesh without the small handles and tunnels of another: changes the topology, which simplification keeps.
  *
  * A loop of edges that does not separate the surface runs around a handle or through a tunnel. Loops
  * are found as the shortest ones within length_mm. The surface is cut along each, shorter ones first,
@@ -46,15 +46,15 @@ typedef struct cw_close_handles_facts {
  * move apart by up to half of the way to their neighbours. A cut whose caps would meet the surface is not made.
  *
  * Closed manifolds stay closed manifolds, no triangles meet that did not meet before, and no component
- * falls apart. A mesh without a short loop stays as it is, to the bit. Loops neither touch open edges nor
+ * falls apart. A mesh without a short loop is copied, to the bit. Loops neither touch open edges nor
  * vertices and edges that are no manifold. The result does not depend on the unit.
  *
- * mesh     in place; unchanged on failure. Vertices and triangles that stay keep their numbers and attributes;
- *          new ones follow them, with attributes of the vertex they are a copy of, or of the closest
- *          point. Normals are computed again by cw_mesh_normals() if there are any and something was
- *          closed. Vertices at equal positions count as different ones, and their edges as open:
- *          weld them first
+ * mesh     borrowed. Vertices at equal positions count as different ones, and their edges as open: weld
+ *          them first
  * desc     borrowed; NULL means all defaults
+ * out      filled on success, emptied on failure; free it with cw_mesh_free(). Vertices and triangles that
+ *          stay keep their numbers and attributes; new ones follow them, with attributes of the vertex that
+ *          they are a copy of, or of the closest point. Normals around cuts are those of cw_mesh_normals()
  * facts    may be NULL
  *
  * Returns  CW_ERR_ARGUMENT  length_mm is negative or not finite, or as cw_mesh_check()
@@ -63,9 +63,9 @@ typedef struct cw_close_handles_facts {
  * Cost     about 4 us for each triangle, and 2 ms for each handle; about 130 bytes for each triangle
  * Threads  reentrant; the same to the bit for any number of threads
  * Source   loops after [Guskov2001], found by a tree and a cotree [Eppstein2003]; caps [Liepa2003] */
-CW_NODISCARD CW_API cw_status cw_mesh_close_handles(cw_mesh *mesh,
+CW_NODISCARD CW_API cw_status cw_mesh_close_handles(const cw_mesh *mesh,
                                                     const cw_close_handles_desc *desc,
-                                                    cw_close_handles_facts *facts,
+                                                    cw_mesh *out, cw_close_handles_facts *facts,
                                                     cw_error *err);
 
 #ifdef __cplusplus

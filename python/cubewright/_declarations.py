@@ -348,7 +348,8 @@ class cw_stage(enum.IntEnum):
     CW_STAGE_NORMALS = 10
     CW_STAGE_COLOR = 11
     CW_STAGE_CHECK = 12
-    CW_STAGE_COUNT = 13
+    CW_STAGE_HANDLES = 13
+    CW_STAGE_COUNT = 14
 
 
 class cw_surface_source(enum.IntEnum):
@@ -3040,6 +3041,7 @@ class cw_pipeline_desc(Structure):
     layers: int
     spool_path: bytes | None
     watch: Any
+    close_handles: Any
 
 
 cw_pipeline_desc._fields_ = [
@@ -3061,6 +3063,7 @@ cw_pipeline_desc._fields_ = [
     ("layers", c_size_t),
     ("spool_path", c_char_p),
     ("watch", cw_pipeline_watch),
+    ("close_handles", POINTER(cw_close_handles_desc)),
 ]
 
 
@@ -3080,6 +3083,7 @@ class cw_pipeline_facts(Structure):
     color_low: float
     color_high: float
     quality: Any
+    handles: Any
 
 
 cw_pipeline_facts._fields_ = [
@@ -3098,6 +3102,7 @@ cw_pipeline_facts._fields_ = [
     ("color_low", c_double),
     ("color_high", c_double),
     ("quality", cw_quality),
+    ("handles", cw_close_handles_facts),
 ]
 
 
@@ -3566,7 +3571,7 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "cw_mesh_format": (POINTER(cw_format), [c_char_p, c_char_p]),
     "cw_volume_format": (POINTER(cw_format), [c_char_p, c_char_p]),
     "cw_formats": (POINTER(cw_format), [POINTER(c_size_t)]),
-    "cw_mesh_close_handles": (c_int, [POINTER(cw_mesh), POINTER(cw_close_handles_desc), POINTER(cw_close_handles_facts), POINTER(cw_error)]),
+    "cw_mesh_close_handles": (c_int, [POINTER(cw_mesh), POINTER(cw_close_handles_desc), POINTER(cw_mesh), POINTER(cw_close_handles_facts), POINTER(cw_error)]),
     "cw_hard_at": (POINTER(cw_hard), [c_size_t]),
     "cw_hard_find": (c_bool, [c_char_p, POINTER(c_size_t)]),
     "cw_hard_stored": (c_double, [c_size_t, c_int, c_double]),

@@ -194,62 +194,72 @@ static cw_status run_rounds(cwi_handles *h, cw_error *err)
 
 /* --- the result --------------------------------------------------------------------------- */
 
-static cw_status make_result(const cwi_handles *h, cw_mesh *mesh, cw_error *err)
+/* Computes the normals around the cuts; those of other vertices stay. */
+static cw_status renew_normals(const cwi_handles *h, cw_mesh *out, cw_error *err)
 {
-    cw_mesh out = {0}, from = *mesh;
+    float *kept = out->normals;
+    uint8_t *is_changed = cwi_alloc_zeroed(out->vertex_count, 1);
+    out->normals = NULL;
+    cw_status st = is_changed ? cw_mesh_normals(out, err) : cwi_fail_memory(err);
+    for (size_t c = 0; c < 3 * out->triangle_count && st == CW_OK; c++)
+        is_changed[out->triangles[c]] |= h->changed[c / 3];
+    for (size_t v = 0; v < out->vertex_count && st == CW_OK; v++)
+        if (!is_changed[v])
+            memcpy(out->normals + 3 * v, kept + 3 * v, 3 * sizeof *kept);
+    cwi_free(kept);
+    cwi_free(is_changed);
+    return st;
+}
+
+static cw_status make_result(const cwi_handles *h, cw_mesh *out, cw_error *err)
+{
+    const cw_mesh *mesh = h->mesh;
     uint32_t *triangles = cwi_alloc_array(h->triangle_count, sizeof *triangles);
     cw_status st = triangles
-                       ? cwi_mesh_alloc(&out, h->vertex_count, h->triangle_count, false, err)
+                       ? cwi_mesh_alloc(out, h->vertex_count, h->triangle_count, false, err)
                        : cwi_fail_memory(err);
     if (st == CW_OK) {
-        memcpy(out.origin, mesh->origin, sizeof out.origin);
-        memcpy(out.affine, mesh->affine, sizeof out.affine);
-        memcpy(out.positions, h->positions, 3 * out.vertex_count * sizeof *out.positions);
-        memcpy(out.triangles, h->triangles, 3 * out.triangle_count * sizeof *out.triangles);
+        memcpy(out->origin, mesh->origin, sizeof out->origin);
+        memcpy(out->affine, mesh->affine, sizeof out->affine);
+        memcpy(out->positions, h->positions, 3 * out->vertex_count * sizeof *out->positions);
+        memcpy(out->triangles, h->triangles, 3 * out->triangle_count * sizeof *out->triangles);
         for (size_t t = 0; t < h->triangle_count; t++)
             triangles[t] = t < mesh->triangle_count ? (uint32_t)t : CWI_ADDED;
         const cwi_sources sources = {h->source, triangles};
         const cw_progress none = {0};
-        from.normals = NULL;
-        st = cwi_carry(&from, &sources, h->desc.threads, &none, &out, err);
+        st = cwi_carry(mesh, &sources, h->desc.threads, &none, out, err);
     }
     if (st == CW_OK && mesh->normals)
-        st = cw_mesh_normals(&out, err);
+        st = renew_normals(h, out, err);
     cwi_free(triangles);
-    if (st != CW_OK) {
-        cw_mesh_free(&out);
-        return st;
-    }
-    out.version = mesh->version;
-    cw_mesh_free(mesh);
-    *mesh = out;
-    return CW_OK;
+    return st;
 }
 
-static cw_status close_all(cwi_handles *h, cw_mesh *mesh, cw_error *err)
+static cw_status close_all(cwi_handles *h, cw_error *err)
 {
     cw_status st = cwi_handles_link(h, err);
     if (st == CW_OK)
         st = cwi_progress(&h->desc.progress, "handles", 0, err);
     if (st == CW_OK)
-        st = cwi_closest_build(mesh, &h->tree, err);
+        st = cwi_closest_build(h->mesh, &h->tree, err);
     if (st == CW_OK)
         st = run_rounds(h, err);
     if (st == CW_OK)
         st = cwi_progress(&h->desc.progress, "handles", 1, err);
-    h->facts.triangles_before = mesh->triangle_count;
+    h->facts.triangles_before = h->mesh->triangle_count;
     h->facts.triangles_after = h->triangle_count;
-    return st == CW_OK && h->facts.cut + h->facts.filled ? make_result(h, mesh, err) : st;
+    return st;
 }
 
-cw_status cw_mesh_close_handles(cw_mesh *mesh, const cw_close_handles_desc *desc,
-                                cw_close_handles_facts *facts, cw_error *err)
+cw_status cw_mesh_close_handles(const cw_mesh *mesh, const cw_close_handles_desc *desc,
+                                cw_mesh *out, cw_close_handles_facts *facts, cw_error *err)
 {
-    CWI_REQUIRE(err, mesh);
+    CWI_REQUIRE(err, mesh, out);
     CWI_REQUIRE_VERSION(err, desc, 0);
     cwi_handles h = {.mesh = mesh, .desc = desc ? *desc : (cw_close_handles_desc){0}};
-    cw_status st = cwi_mesh_check_size(mesh, "freed of handles", err);
     const double length = h.desc.length_mm;
+    *out = (cw_mesh){0};
+    cw_status st = cwi_mesh_check_size(mesh, "freed of handles", err);
     if (st == CW_OK && (!(length >= 0) || !isfinite(length)))
         st = cwi_fail(err, CW_ERR_ARGUMENT, "length_mm is %g; it must be finite, and 0 or more",
                       length);
@@ -257,10 +267,15 @@ cw_status cw_mesh_close_handles(cw_mesh *mesh, const cw_close_handles_desc *desc
         double low[3], high[3];
         cw_mesh_bounds(mesh, low, high);
         h.facts.length_mm = length > 0 ? length : CW_HANDLE_FRACTION * cwi_distance(low, high);
-        st = close_all(&h, mesh, err);
+        st = close_all(&h, err);
     }
+    if (st == CW_OK)
+        st = h.facts.cut + h.facts.filled ? make_result(&h, out, err)
+                                          : cwi_mesh_copy(mesh, out, err);
     if (facts)
         *facts = st == CW_OK ? h.facts : (cw_close_handles_facts){0};
+    if (st != CW_OK)
+        cw_mesh_free(out);
     cwi_handles_free(&h);
     return st;
 }

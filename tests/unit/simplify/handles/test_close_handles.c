@@ -163,14 +163,28 @@ static cw_quality measure(const cw_mesh *m)
     return q;
 }
 
+/* Closes the handles in place. */
+static cw_status close_in_place(cw_mesh *m, const cw_close_handles_desc *desc,
+                                cw_close_handles_facts *facts, cw_error *err)
+{
+    cw_mesh out;
+    const cw_status st = cw_mesh_close_handles(m, desc, &out, facts, err);
+    if (st != CW_OK) {
+        assert_null(out.positions);
+        return st;
+    }
+    cw_mesh_free(m);
+    *m = out;
+    return CW_OK;
+}
+
 /* Closes the handles, and holds the facts against the meshes. */
 static cw_close_handles_facts close_handles(cw_mesh *m, double length_mm)
 {
     cw_close_handles_facts facts;
     cw_error err = {0};
     const cw_quality before = measure(m);
-    assert_ok(cw_mesh_close_handles(m, &(cw_close_handles_desc){.length_mm = length_mm}, &facts,
-                                    &err),
+    assert_ok(close_in_place(m, &(cw_close_handles_desc){.length_mm = length_mm}, &facts, &err),
               err);
     const cw_quality after = measure(m);
     assert_int_equal(facts.genus_before, before.genus);
@@ -238,7 +252,10 @@ static void what_is_far_from_a_cut_stays_to_the_bit(void **state)
     (void)state;
     cw_mesh m = extract_solid(bridged_3, 1, false), first = copy_mesh(&m);
     close_handles(&m, 12);
-    size_t moved = 0, changed = 0;
+    size_t moved = 0, changed = 0, turned = 0;
+    for (size_t v = 0; v < first.vertex_count; v++)
+        turned += memcmp(m.normals + 3 * v, first.normals + 3 * v, 3 * sizeof(float)) != 0;
+    assert_true(turned > 10 && turned < 300);
     for (size_t v = 0; v < first.vertex_count; v++)
         moved += memcmp(m.positions + 3 * v, first.positions + 3 * v, 3 * sizeof(float)) != 0;
     for (size_t t = 0; t < first.triangle_count; t++)
@@ -289,8 +306,8 @@ static void a_surface_without_handles_stays_to_the_bit(void **state)
         cw_mesh first = copy_mesh(&solids[n]);
         cw_close_handles_facts facts;
         cw_error err = {0};
-        assert_ok(cw_mesh_close_handles(&solids[n], &(cw_close_handles_desc){.length_mm = 1000},
-                                        &facts, &err),
+        assert_ok(close_in_place(&solids[n], &(cw_close_handles_desc){.length_mm = 1000},
+                                 &facts, &err),
                   err);
         assert_int_equal(facts.genus_before, 0);
         if (n < 3)
@@ -343,8 +360,7 @@ static void what_is_no_manifold_is_left_alone(void **state)
                          m.triangles[1], m.triangles[2]},
            6 * sizeof(uint32_t));
     cw_close_handles_facts f;
-    assert_ok(cw_mesh_close_handles(&fin, &(cw_close_handles_desc){.length_mm = 12}, &f, &err),
-              err);
+    assert_ok(close_in_place(&fin, &(cw_close_handles_desc){.length_mm = 12}, &f, &err), err);
     assert_int_equal(f.cut, 3);
     assert_int_equal(f.genus_after, 0);
     const cw_quality q = measure(&fin);
@@ -392,7 +408,7 @@ static void any_number_of_threads_gives_the_same(void **state)
         cw_error err = {0};
         const cw_close_handles_desc desc = {.length_mm = 14, .threads = threads[n]};
         made[n] = extract_noise(9, 40, false);
-        assert_ok(cw_mesh_close_handles(&made[n], &desc, NULL, &err), err);
+        assert_ok(close_in_place(&made[n], &desc, NULL, &err), err);
         assert_same_mesh(&made[n], &made[0]);
     }
     for (int n = 0; n < 3; n++)
@@ -432,18 +448,23 @@ static void wrong_arguments_are_told(void **state)
 {
     (void)state;
     cw_mesh m = test_extract_field(CW_FIELD_SPHERE, 8);
+    cw_mesh out;
     cw_error err = {0};
-    assert_fails(cw_mesh_close_handles(NULL, NULL, NULL, &err), CW_ERR_ARGUMENT, "mesh", err);
+    assert_fails(cw_mesh_close_handles(NULL, NULL, &out, NULL, &err), CW_ERR_ARGUMENT, "mesh",
+                 err);
+    assert_fails(cw_mesh_close_handles(&m, NULL, NULL, NULL, &err), CW_ERR_ARGUMENT, "out",
+                 err);
     assert_fails(
-        cw_mesh_close_handles(&m, &(cw_close_handles_desc){.length_mm = -1}, NULL, &err),
+        cw_mesh_close_handles(&m, &(cw_close_handles_desc){.length_mm = -1}, &out, NULL, &err),
         CW_ERR_ARGUMENT, "length_mm is -1; it must be finite, and 0 or more", err);
     assert_fails(cw_mesh_close_handles(&m, &(cw_close_handles_desc){.length_mm = (double)NAN},
-                                       NULL, &err),
+                                       &out, NULL, &err),
                  CW_ERR_ARGUMENT, "length_mm", err);
-    assert_fails(cw_mesh_close_handles(&m, &(cw_close_handles_desc){.version = 9}, NULL, &err),
-                 CW_ERR_ARGUMENT, "version", err);
+    assert_fails(
+        cw_mesh_close_handles(&m, &(cw_close_handles_desc){.version = 9}, &out, NULL, &err),
+        CW_ERR_ARGUMENT, "version", err);
     m.triangles[4] = (uint32_t)m.vertex_count;
-    assert_fails(cw_mesh_close_handles(&m, NULL, NULL, &err), CW_ERR_ARGUMENT, "", err);
+    assert_fails(cw_mesh_close_handles(&m, NULL, &out, NULL, &err), CW_ERR_ARGUMENT, "", err);
     cw_mesh_free(&m);
 }
 
@@ -459,7 +480,7 @@ static void failures_and_cancelling_leave_the_mesh(void **state)
     for (; st != CW_OK; stops++) {
         int polls = stops;
         desc.progress = (cw_progress){test_stop_after, &polls};
-        st = cw_mesh_close_handles(&m, &desc, &facts, &err);
+        st = close_in_place(&m, &desc, &facts, &err);
         if (st == CW_OK)
             break;
         assert_int_equal(st, CW_ERR_CANCELLED);
@@ -473,7 +494,7 @@ static void failures_and_cancelling_leave_the_mesh(void **state)
     st = CW_ERR_NO_MEMORY;
     for (long n = 0; st != CW_OK; n += 1 + (test_is_short() ? n / 4 : n / 64)) {
         cwi_alloc_fail_after(n);
-        st = cw_mesh_close_handles(&m, &desc, NULL, &err);
+        st = close_in_place(&m, &desc, NULL, &err);
         if (!cwi_alloc_fail_after(-1)) {
             assert_ok(st, err);
             break;
