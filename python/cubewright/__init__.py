@@ -19,6 +19,7 @@ from ._color import color_by
 from ._cut import Cut, cut
 from ._errors import Error, Status
 from ._extract import Extractor, LabelSurfaces, Patch, Settings, extract, extract_labels, extract_levels
+from ._handles import Closed, close_handles
 from ._library import lib as _lib
 from ._memory import memory_limit, memory_used
 from ._mesh import Mesh
@@ -36,6 +37,7 @@ __version__: str = _lib.cw_version().decode()
 
 __all__ = [
     "Check",
+    "Closed",
     "Combined",
     "Cut",
     "Error",
@@ -58,6 +60,7 @@ __all__ = [
     "Written",
     "boolean",
     "check",
+    "close_handles",
     "color_by",
     "cut",
     "extract",
