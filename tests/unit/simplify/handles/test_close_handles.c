@@ -4,6 +4,7 @@
 
 #include "core/base/memory.h"
 #include "core/mesh/mesh.h"
+#include "core/mesh/mesh_attributes.h"
 #include "core/synthetic/random_fill.h"
 
 #include <math.h>
@@ -370,6 +371,38 @@ static void what_is_no_manifold_is_left_alone(void **state)
     cw_mesh_free(&fin);
 }
 
+static size_t count_crossings(const cw_mesh *m)
+{
+    cw_crossings found;
+    cw_error err = {0};
+    assert_ok(cw_self_intersections(m, NULL, &found, &err), err);
+    const size_t count = found.count;
+    cw_crossings_free(&found);
+    return count;
+}
+
+/* Two bridged balls that cross: handles go, and the crossings are no more than before. */
+static void crossings_of_the_input_stay(void **state)
+{
+    (void)state;
+    for (int n = 0; n < 3; n++) {
+        cw_mesh m = extract_solid(bridged_3, 1, false), other = copy_mesh(&m);
+        cw_error err = {0};
+        for (size_t v = 0; v < other.vertex_count; v++)
+            other.positions[3 * v + 2] += (float)(6 + 9 * n); /* along z, where no bridge is */
+        assert_ok(cwi_mesh_append(&m, &other, &err), err);
+        const size_t before = count_crossings(&m);
+        assert_true(before > 50);
+        cw_close_handles_facts f;
+        assert_ok(close_in_place(&m, &(cw_close_handles_desc){.length_mm = 12}, &f, &err), err);
+        assert_int_equal(f.genus_before, 6);
+        assert_true(f.cut + f.left_crossing == 6 && f.cut > 2);
+        assert_true(count_crossings(&m) <= before);
+        cw_mesh_free(&m);
+        cw_mesh_free(&other);
+    }
+}
+
 static void scale_mesh(cw_mesh *m, double scale)
 {
     for (size_t n = 0; n < 3 * m->vertex_count; n++)
@@ -516,6 +549,7 @@ int main(void)
         cmocka_unit_test(a_surface_without_handles_stays_to_the_bit),
         cmocka_unit_test(open_edges_stay_where_they_are),
         cmocka_unit_test(what_is_no_manifold_is_left_alone),
+        cmocka_unit_test(crossings_of_the_input_stay),
         cmocka_unit_test(any_unit_gives_the_same),
         cmocka_unit_test(any_number_of_threads_gives_the_same),
         cmocka_unit_test(attributes_come_along),
