@@ -6,6 +6,7 @@
 #include "cli/inputs/level_choice.h"
 #include "cli/results/detail_levels.h"
 #include "cli/results/mesh_comparison.h"
+#include "cli/results/stage_facts.h"
 #include "core/base/status.h"
 
 #include <cubewright/simplify.h>
@@ -14,7 +15,7 @@
 typedef struct simplify_args {
     cli_mesh_args mesh;
     const char *mesh_reader;
-    cli_length error, drop;
+    cli_length error, drop, handles;
     cli_number ratio, iso;
     size_t triangles;
     cli_counts lod;
@@ -27,6 +28,7 @@ typedef struct simplify_state {
     cli_number iso; /* of the arguments, as a number */
     cli_volume source;
     double error_mm, drop_mm;
+    cw_close_handles_facts handles; /* of --close-handles */
 } simplify_state;
 
 static const simplify_args *args_of(const cli_mesh_run *r)
@@ -62,6 +64,10 @@ static const cli_option options[] = {
     {"drop-components", 0, CLI_MESH_LENGTH, "L",
      "Leave out components with a shorter box diagonal at the start, such as 2mm (none)",
      offsetof(simplify_args, drop)},
+    {"close-handles", 0, CLI_MESH_LENGTH, "auto/L",
+     "Close handles and tunnels at the start, by loops up to 4mm, or auto: 3% of the box's diagonal "
+     "(none)",
+     offsetof(simplify_args, handles)},
     CLI_MESH_MERGE,
     CLI_MESH_ORIENT,
     CLI_HEADED("Source volume and error"),
@@ -143,6 +149,8 @@ static void put_params(cli_json *j, const cli_mesh_run *r, const cli_made *made)
 static void put_facts(cli_json *j, const cli_mesh_run *r)
 {
     const simplify_state *s = r->state;
+    if (args_of(r)->handles.given)
+        cli_json_handles(j, &s->handles);
     if (s->source.format)
         cli_json_input(j, "source", &s->source);
 }
@@ -400,8 +408,29 @@ static cw_status make_levels(cli_mesh_run *r, cw_error *err)
     return st;
 }
 
+/* Closes small handles; what is made is then held against the closed surface. */
+static cw_status close_handles(cli_mesh_run *r, cw_error *err)
+{
+    simplify_state *s = r->state;
+    const cli_length *length = &args_of(r)->handles;
+    const size_t before = r->pieces.triangles;
+    if (!length->given)
+        return CW_OK;
+    cli_report_begin(&r->report);
+    cw_status st = cli_close_handles(&r->pieces, length->is_word ? 0 : length_mm(r, length),
+                                     r->threads, &s->handles, err);
+    if (st == CW_OK)
+        st = cli_measure_pieces(&r->pieces, r->threads, err);
+    if (st == CW_OK)
+        cli_report_end(&r->report, "close_handles", before, r->pieces.triangles);
+    return st;
+}
+
 static cw_status make_result(cli_mesh_run *r, cw_error *err)
 {
+    const cw_status st = close_handles(r, err);
+    if (st != CW_OK)
+        return st;
     return args_of(r)->lod.count ? make_levels(r, err) : cli_make_mesh(r, err);
 }
 

@@ -79,6 +79,10 @@ static const cli_option options[] = {
     {"fill-voids", 0, CLI_FLAG, NULL,
      "Leave out the cavities of solids, and all inside them (off)",
      offsetof(cli_extract_args, fill_voids)},
+    {"close-handles", 0, CLI_LENGTH, "auto/L",
+     "Close handles and tunnels by loops up to 4mm, 5vox, or auto: 3% of the surface's diagonal "
+     "(none)",
+     offsetof(cli_extract_args, handles)},
     {"smooth", 0, CLI_SMOOTHING, "METHOD",
      "Smooth the surface: taubin or hc, with their iterations (taubin:10), or fair, with the length "
      "of waves that keep half (fair:4vox) (off)",

@@ -97,6 +97,15 @@ size_t cli_extract_largest(const cli_extract_args *args)
     return args->profile == CLI_PROFILE_PRINT && !chooses ? 1 : args->largest;
 }
 
+cw_close_handles_desc cli_extract_handles(const cli_extract_args *args,
+                                          const cli_volume *volume)
+{
+    const cli_length *length = &args->handles;
+    return (cw_close_handles_desc){.length_mm = length->is_word || !length->given
+                                                    ? 0
+                                                    : cli_volume_length_mm(volume, length)};
+}
+
 cw_smooth_desc cli_extract_smoothing(const cli_extract_args *args, const cli_volume *volume)
 {
     const cli_smoothing *smooth = &args->smooth;
@@ -156,6 +165,8 @@ void cli_extract_put_params(cli_json *j, const void *p, const cli_made *made)
     }
     if (args->fill_voids)
         cli_json_bool(j, "fill_voids", true);
+    if (args->handles.given)
+        cli_json_number(j, "close_handles_mm", made->facts.handles.length_mm);
     if (args->cut.given)
         cli_json_text(j, "cut_plane", cli_plane_text(&args->cut));
     if (args->smooth.given) {
@@ -200,6 +211,12 @@ size_t cli_extract_provenance(const cli_extract_run *s, size_t n, cli_making *ma
     lines[count++] = (cw_provenance){"inside", cli_extract_is_low(s) ? "below" : "above"};
     lines[count++] = (cw_provenance){"topology", args->topology ? "simple" : "field"};
     lines[count++] = (cw_provenance){"placement", args->placement ? "cubic" : "linear"};
+    if (args->handles.given) {
+        const double length_mm = cli_extract_handles(args, &s->input.volume).length_mm;
+        snprintf(making->handles, sizeof making->handles,
+                 length_mm > 0 ? "loops up to %.9g mm" : "auto", length_mm);
+        lines[count++] = (cw_provenance){"closed handles", making->handles};
+    }
     if (args->smooth.given) {
         snprintf(making->smooth, sizeof making->smooth, "by %s, %.9g mm at most",
                  cli_smoothing_text(&args->smooth),

@@ -28,6 +28,7 @@ typedef struct cli_extract_args {
     cli_amount least;
     size_t largest; /* components to keep; 0: all */
     bool fill_voids;
+    cli_length handles;
     cli_smoothing smooth;
     cli_plane cut;
     cli_length max_move;
@@ -81,7 +82,7 @@ typedef struct cli_extract_run {
     cli_extract_output output;
 } cli_extract_run;
 
-enum { CLI_EXTRACT_PROVENANCE = 7 };
+enum { CLI_EXTRACT_PROVENANCE = 8 };
 
 /* ---- arguments --------------------------------------------------------------------------- */
 
@@ -122,6 +123,10 @@ double cli_extract_voxel_mm(const cli_extract_run *s);
 double cli_extract_length_mm(const cli_extract_run *s, const cli_length *length);
 double cli_extract_error_mm(const cli_extract_run *s);
 
+/* Returns the settings of --close-handles. */
+cw_close_handles_desc cli_extract_handles(const cli_extract_args *args,
+                                          const cli_volume *volume);
+
 /* Returns the settings of --smooth. */
 cw_smooth_desc cli_extract_smoothing(const cli_extract_args *args, const cli_volume *volume);
 
@@ -143,7 +148,7 @@ void cli_extract_put_series(cli_json *j, const void *p);
 
 /* Texts that the lines of a record point to. */
 typedef struct cli_making {
-    char level[32], smooth[96], simplify[64];
+    char level[32], handles[48], smooth[96], simplify[64];
 } cli_making;
 
 /* Writes how the surface of level n was made, for the record in its file; returns the number of lines.

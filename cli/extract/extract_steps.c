@@ -5,6 +5,7 @@
 #include "cli/framework/console.h"
 #include "cli/inputs/cut_options.h"
 #include "cli/inputs/extract_surface.h"
+#include "cli/results/detail_levels.h"
 #include "cli/results/mesh_comparison.h"
 #include "cli/results/stage_facts.h"
 #include "core/base/status.h"
@@ -57,12 +58,14 @@ static cw_simplify_desc simplify_desc(const cli_extract_run *s, double error)
 void cli_extract_describe_stages(const cli_extract_args *args, const cli_volume *volume,
                                  cli_surface_settings *set)
 {
+    set->handles = cli_extract_handles(args, volume);
     set->smooth = cli_extract_smoothing(args, volume);
     set->cut = cli_cut_desc(&args->cut);
     set->desc = (cw_pipeline_desc){
         .min_volume_mm3 = cli_extract_least_mm3(args, volume),
         .largest = cli_extract_largest(args),
         .fill_voids = args->fill_voids,
+        .close_handles = args->handles.given ? &set->handles : NULL,
         .smooth = args->smooth.given ? &set->smooth : NULL,
         .cut = args->cut.given ? &set->cut : NULL,
         .cull = args->pixel.cull,
@@ -223,6 +226,16 @@ static cw_status measure_from_full(cli_extract_run *s, cli_made *made, const cw_
     return st;
 }
 
+/* Returns the handles of a surface that keeps too many triangles. */
+static cli_handles_left find_handles(const cli_extract_run *s, const cli_made *made,
+                                     const cw_mesh *mesh)
+{
+    cw_quality q;
+    const cw_quality_desc desc = {.threads = (int)s->args->input.threads};
+    const bool is_known = cw_quality_measure(mesh, &desc, &q, NULL) == CW_OK && q.genus > 0;
+    return (cli_handles_left){is_known ? (size_t)q.genus : 0, made->facts.handles.length_mm};
+}
+
 cw_status cli_extract_judge(cli_extract_run *s, cli_made *made, const cw_mesh *mesh,
                             cw_error *err)
 {
@@ -233,10 +246,8 @@ cw_status cli_extract_judge(cli_extract_run *s, cli_made *made, const cw_mesh *m
         cli_say("%s: %s triangles were extracted, and simplified to %s", s->input.volume.path,
                 cli_count(counts->triangles), cli_count(mesh->triangle_count));
     if (args->simplify.triangles && mesh->triangle_count > args->simplify.triangles)
-        cli_report_warn(&s->output.report,
-                        "%s triangles were requested, %s are left: removing more would tear "
-                        "the surface, flip it or make it intersect itself",
-                        cli_count(args->simplify.triangles), cli_count(mesh->triangle_count));
+        cli_report_left(&s->output.report, args->simplify.triangles, mesh->triangle_count,
+                        find_handles(s, made, mesh), false);
     if (!args->check || !args->measure)
         return CW_OK;
     if (s->input.volume.streams) {

@@ -51,6 +51,7 @@ static cw_status make_levels(void *state, cw_mesh *levels, cw_error *err)
     cli_report_end(&s->output.report, "simplify", r->full.triangle_count, r->triangles);
     cli_say("%s: %s triangles were extracted", path, cli_count(r->full.triangle_count));
     st = cli_take_surface(&r->pieces, path, &r->full, err);
+    r->pieces.closed_mm = made->facts.handles.length_mm;
     return st == CW_OK && s->args->check
                ? cli_measure_pieces(&r->pieces, (int)s->args->input.threads, err)
                : st;

@@ -11,6 +11,9 @@ const cli_synonym cli_synonyms[] = {
      "metal."},
     {"decimat|reduc|low-poly|low poly|lowpoly|poly count|polycount|polygon count|face count",
      "simplify", "simplify|--triangles|--ratio|--error", NULL},
+    {"tunnel|genus|pinhole|topological noise", "handle",
+     "--close-handles|--fill-voids|--topology",
+     "'simplify' keeps handles, unless --close-handles closes small ones."},
     {"lod|level of detail|levels of detail", NULL, "--lod", NULL},
     {"remesh|retopolog", NULL, "offset|--by|--snap",
      "'offset --by 0' makes a new mesh of the same surface; 'extract --snap' gives better "

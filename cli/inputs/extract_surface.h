@@ -9,6 +9,7 @@
 /* Settings of a surface, and what they point to. */
 typedef struct cli_surface_settings {
     cw_pipeline_desc desc;
+    cw_close_handles_desc handles;
     cw_smooth_desc smooth;
     cw_cut_desc cut;
     cw_simplify_desc simplify;

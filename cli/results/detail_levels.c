@@ -14,6 +14,9 @@
 #include <stdlib.h>
 #include <unistd.h>
 
+/* Triangles that a handle keeps, about, and the part of all from which on that is worth a word. */
+enum { HANDLE_TRIANGLES = 13, HANDLES_PART = 4 };
+
 /* Names in the report, which outlives the levels. */
 static const char *const level_names[CLI_MAX_COUNTS] = {
     "lod0", "lod1", "lod2",  "lod3",  "lod4",  "lod5",  "lod6",  "lod7",
@@ -27,6 +30,41 @@ cw_status cli_name_detail_levels(cli_outputs *files, const char *output, const c
                                 apart ? CLI_LOD_APART : CLI_LOD_BOTH, err);
 }
 
+static cli_handles_left handles_of(const cli_pieces *p)
+{
+    return (cli_handles_left){cli_count_handles(p), p->closed_mm};
+}
+
+/* Prints how many handles keep triangles that were to go; nothing where they are few. */
+static const char *handles_text(cli_handles_left handles, size_t triangles)
+{
+    static char text[160];
+    const bool is_one = handles.count == 1;
+    size_t used = 0;
+    *text = '\0';
+    if (handles.count * HANDLE_TRIANGLES <= triangles / HANDLES_PART)
+        return text;
+    used = (size_t)snprintf(
+        text, sizeof text, "; its %s handle%s keep%s about %d each: ", cli_count(handles.count),
+        is_one ? "" : "s", is_one ? "s" : "", HANDLE_TRIANGLES);
+    if (handles.closed_mm > 0)
+        snprintf(text + used, sizeof text - used,
+                 "--close-handles with more than %.3gmm may close more", handles.closed_mm);
+    else
+        snprintf(text + used, sizeof text - used, "--close-handles auto closes small ones");
+    return text;
+}
+
+void cli_report_left(cli_report *report, size_t target, size_t triangles,
+                     cli_handles_left handles, bool keeps_border)
+{
+    cli_report_warn(report,
+                    "%s triangles were requested, %s are left: removing more would tear "
+                    "the surface%s, flip it or make it intersect itself%s",
+                    cli_count(target), cli_count(triangles),
+                    keeps_border ? ", move its border" : "", handles_text(handles, triangles));
+}
+
 void cli_report_missed(cli_report *report, const cli_pieces *pieces, size_t target,
                        size_t triangles, bool keeps_border)
 {
@@ -34,11 +72,7 @@ void cli_report_missed(cli_report *report, const cli_pieces *pieces, size_t targ
         cli_say("%s: already has no more than the %s triangles requested", pieces->path,
                 cli_count(target));
     if (target && triangles > target)
-        cli_report_warn(report,
-                        "%s triangles were requested, %s are left: removing more would tear "
-                        "the surface%s, flip it or make it intersect itself",
-                        cli_count(target), cli_count(triangles),
-                        keeps_border ? ", move its border" : "");
+        cli_report_left(report, target, triangles, handles_of(pieces), keeps_border);
 }
 
 void cli_json_lod(cli_json *j, const cli_counts *lod)
@@ -63,10 +97,36 @@ static cw_status order_for_drawing(cli_detail_levels *d, cw_mesh *level, cw_erro
     return st == CW_OK ? CW_OK : cwi_fail(err, st, "%s: %s", d->pieces->path, why.message);
 }
 
+/* Refuses levels with as many triangles as the one before: they are the same mesh. */
+static cw_status check_levels(const cli_detail_levels *d, cw_error *err)
+{
+    for (size_t n = 1; n < d->lod->count; n++) {
+        const size_t triangles = d->mesh[n].triangle_count;
+        const char *hint = handles_text(handles_of(d->pieces), triangles);
+        if (triangles != d->mesh[n - 1].triangle_count)
+            continue;
+        if (triangles <= d->lod->n[n])
+            return cwi_fail(
+                err, CW_ERR_CHECK,
+                "%s: --lod: level %zu would be level %zu again, as the mesh has no more than "
+                "%s triangles: leave %zu out",
+                d->pieces->path, n, n - 1, cli_count(triangles), d->lod->n[n - 1]);
+        return cwi_fail(
+            err, CW_ERR_CHECK,
+            "%s: --lod: level %zu would be level %zu again: %s triangles were requested, "
+            "%s are left%s",
+            d->pieces->path, n, n - 1, cli_count(d->lod->n[n]), cli_count(triangles),
+            *hint ? hint : "; leave it out");
+    }
+    return CW_OK;
+}
+
 static cw_status make_level(cli_detail_levels *d, size_t n, cli_made *made, cw_error *err)
 {
     cw_mesh *level = &d->mesh[n];
     cw_status st = n == 0 ? d->make(d->user, d->mesh, err) : CW_OK;
+    if (st == CW_OK && n == 0)
+        st = check_levels(d, err);
     if (st != CW_OK)
         return st;
     cli_report_missed(d->report, d->pieces, d->lod->n[n], level->triangle_count,

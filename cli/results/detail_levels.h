@@ -43,6 +43,16 @@ void cli_free_detail_levels(cli_detail_levels *d);
 void cli_report_missed(cli_report *report, const cli_pieces *pieces, size_t target,
                        size_t triangles, bool keeps_border);
 
+/* The handles of a surface; 0: none, or not known. closed_mm: as of cli_pieces */
+typedef struct cli_handles_left {
+    size_t count;
+    double closed_mm;
+} cli_handles_left;
+
+/* Warns that more triangles are left than requested, and says what would let fewer do. */
+void cli_report_left(cli_report *report, size_t target, size_t triangles,
+                     cli_handles_left handles, bool keeps_border);
+
 /* Writes the key `lod`: the triangles asked for. */
 void cli_json_lod(cli_json *j, const cli_counts *lod);
 

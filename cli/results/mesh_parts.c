@@ -1,9 +1,10 @@
-/* Welds, measures, filters and compares the parts of a mesh piece by piece. */
+/* Welds, measures, filters, closes and compares the parts of a mesh piece by piece. */
 #include "cli/results/mesh_parts.h"
 
 #include "cli/framework/console.h"
 #include "cli/framework/quantity.h"
 #include "cli/results/mesh_comparison.h"
+#include "cli/results/stage_facts.h"
 #include "core/base/memory.h"
 #include "core/base/status.h"
 #include "core/geometry/box.h"
@@ -112,6 +113,60 @@ cw_status cli_drop_from_pieces(cli_pieces *p, double diagonal_mm, cw_error *err)
     return in_file(p, st, err);
 }
 
+static void add_handles(cw_close_handles_facts *sum, const cw_close_handles_facts *f)
+{
+    sum->genus_before += f->genus_before;
+    sum->genus_after += f->genus_after;
+    sum->cut += f->cut;
+    sum->filled += f->filled;
+    sum->left_long += f->left_long;
+    sum->left_crossing += f->left_crossing;
+    sum->change_mm = fmax(sum->change_mm, f->change_mm);
+}
+
+static cw_status close_piece(cli_piece *piece, const cw_close_handles_desc *desc,
+                             cw_close_handles_facts *facts, cw_error *err)
+{
+    cw_mesh closed;
+    const cw_status st = cw_mesh_close_handles(&piece->input, desc, &closed, facts, err);
+    if (st != CW_OK)
+        return st;
+    piece->input = closed;
+    piece->owns_input = true;
+    return CW_OK;
+}
+
+cw_status cli_close_handles(cli_pieces *p, double length_mm, int threads,
+                            cw_close_handles_facts *facts, cw_error *err)
+{
+    const cw_close_handles_desc desc = {
+        .length_mm = length_mm > 0 ? length_mm : CW_HANDLE_FRACTION * p->diagonal_mm,
+        .threads = threads,
+        .progress = cli_progress((double)p->triangles / 1e6, "Mtriangle")};
+    char text[CLI_HANDLES_TEXT];
+    cw_status st = CW_OK;
+    *facts = (cw_close_handles_facts){.length_mm = desc.length_mm};
+    for (size_t n = 0; n < p->count && st == CW_OK; n++) {
+        cw_close_handles_facts found = {0};
+        st = close_piece(&p->piece[n], &desc, &found, err);
+        add_handles(facts, &found);
+    }
+    if (st != CW_OK)
+        return in_file(p, st, err);
+    p->closed_mm = desc.length_mm;
+    cli_handles_text(facts, text);
+    cli_say("%s: %s", p->path, text);
+    return CW_OK;
+}
+
+size_t cli_count_handles(const cli_pieces *p)
+{
+    size_t handles = 0;
+    for (size_t n = 0; n < p->count; n++)
+        handles += p->piece[n].before.genus > 0 ? (size_t)p->piece[n].before.genus : 0;
+    return handles;
+}
+
 cw_status cli_measure_pieces(cli_pieces *p, int threads, cw_error *err)
 {
     const cw_quality_desc desc = {.weld = CW_WELD_LOCAL, .threads = threads};
@@ -191,8 +246,11 @@ cw_status cli_list_parts(const cli_pieces *p, cw_part **parts, cw_error *err)
 
 void cli_free_pieces(cli_pieces *p)
 {
-    for (size_t n = 0; n < p->count; n++)
+    for (size_t n = 0; n < p->count; n++) {
         cw_mesh_free(&p->piece[n].out);
+        if (p->piece[n].owns_input)
+            cw_mesh_free(&p->piece[n].input);
+    }
     free(p->piece);
     *p = (cli_pieces){0};
 }

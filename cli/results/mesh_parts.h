@@ -7,7 +7,8 @@
 #include "cli/results/run_report.h"
 
 typedef struct cli_piece {
-    cw_mesh input; /* its arrays are those of the cli_mesh, welded */
+    cw_mesh input; /* its arrays are those of the cli_mesh, welded, unless owns_input */
+    bool owns_input;
     const char *name;
     const cw_label *label; /* that of the part; borrowed */
     cw_quality before;     /* of the input */
@@ -21,6 +22,7 @@ typedef struct cli_pieces {
     size_t merged, dropped;      /* vertices; components */
     double diagonal_mm;          /* of the box of all, as they were read */
     const cw_textures *textures; /* of all, borrowed; NULL: none */
+    double closed_mm;            /* handles with loops up to this were closed; 0: none were */
 } cli_pieces;
 
 /* Makes a piece of each part that has triangles, vertices at equal positions one, and says so.
@@ -41,6 +43,15 @@ CW_NODISCARD cw_status cli_take_surface(cli_pieces *p, const char *path, const c
 /* Leaves out components whose box has a shorter diagonal, and says how many.
  * Returns  CW_ERR_EMPTY when nothing is left */
 CW_NODISCARD cw_status cli_drop_from_pieces(cli_pieces *p, double diagonal_mm, cw_error *err);
+
+/* Closes small handles of what goes in, and says how many.
+ * length_mm  of the longest loop; 0: CW_HANDLE_FRACTION of the diagonal of all
+ * facts      of all pieces together */
+CW_NODISCARD cw_status cli_close_handles(cli_pieces *p, double length_mm, int threads,
+                                         cw_close_handles_facts *facts, cw_error *err);
+
+/* Returns the handles of what goes in, once it was looked at. */
+size_t cli_count_handles(const cli_pieces *p);
 
 /* Looks at what goes in, for cli_hold_pieces(). */
 CW_NODISCARD cw_status cli_measure_pieces(cli_pieces *p, int threads, cw_error *err);

@@ -39,6 +39,46 @@ void cli_smoothed_text(const cw_smooth_facts *f, char text[CLI_SMOOTHED_TEXT])
              cli_count(f->flipped), f->flipped == 1 ? "" : "s");
 }
 
+/* --- handles -------------------------------------------------------------------------------- */
+
+void cli_json_handles(cli_json *j, const cw_close_handles_facts *f)
+{
+    cli_json_open(j, "handles", '{');
+    cli_json_number(j, "length_mm", f->length_mm);
+    cli_json_count(j, "before", f->genus_before);
+    cli_json_count(j, "after", f->genus_after);
+    cli_json_count(j, "cut", f->cut);
+    cli_json_count(j, "filled", f->filled);
+    cli_json_count(j, "left_long", f->left_long);
+    cli_json_count(j, "left_crossing", f->left_crossing);
+    cli_json_number(j, "max_change_mm", f->change_mm);
+    cli_json_close(j, '}');
+}
+
+void cli_handles_text(const cw_close_handles_facts *f, char text[CLI_HANDLES_TEXT])
+{
+    const size_t closed = f->cut + f->filled;
+    if (!f->genus_before) {
+        snprintf(text, CLI_HANDLES_TEXT, "has no handles to close");
+        return;
+    }
+    size_t used = (size_t)snprintf(text, CLI_HANDLES_TEXT,
+                                   "closed %s of %s handle%s by loops up to %.3g mm",
+                                   cli_count(closed), cli_count(f->genus_before),
+                                   f->genus_before == 1 ? "" : "s", f->length_mm);
+    if (closed)
+        used += (size_t)snprintf(text + used, CLI_HANDLES_TEXT - used,
+                                 ": %s cut, %s tunnel%s filled, largest change %.3g mm",
+                                 cli_count(f->cut), cli_count(f->filled),
+                                 f->filled == 1 ? "" : "s", f->change_mm);
+    if (f->genus_after)
+        used += (size_t)snprintf(text + used, CLI_HANDLES_TEXT - used, "; %s left: %s longer",
+                                 cli_count(f->genus_after), cli_count(f->left_long));
+    if (f->left_crossing)
+        snprintf(text + used, CLI_HANDLES_TEXT - used,
+                 ", %s whose caps would cross the surface", cli_count(f->left_crossing));
+}
+
 /* --- components ----------------------------------------------------------------------------- */
 
 /* Writes how many of the components left out were cavities, and that a cut follows. */
@@ -115,6 +155,19 @@ static void put_voids(cli_json *j, const cw_pipeline_facts *f, double least_mm3)
     cli_json_close(j, '}');
 }
 
+static void tell_handles(const cli_staged *s)
+{
+    char text[CLI_HANDLES_TEXT];
+    cli_handles_text(&s->facts->handles, text);
+    cli_say("%s: %s", s->subject, text);
+}
+
+static void put_handles(cli_json *j, const cw_pipeline_facts *f, double least_mm3)
+{
+    (void)least_mm3;
+    cli_json_handles(j, &f->handles);
+}
+
 /* --- shape and colours ---------------------------------------------------------------------- */
 
 static void tell_smoothing(const cli_staged *s)
@@ -168,6 +221,7 @@ static const struct row {
     {CW_STAGE_MIN_VOLUME, tell_dropped, put_dropped},
     {CW_STAGE_LARGEST, tell_largest, NULL},
     {CW_STAGE_FILL_VOIDS, tell_voids, put_voids},
+    {CW_STAGE_HANDLES, tell_handles, put_handles},
     {CW_STAGE_SMOOTH, tell_smoothing, put_smoothing},
     {CW_STAGE_CUT, tell_cut, put_cut},
     {CW_STAGE_CULL, tell_culling, NULL},

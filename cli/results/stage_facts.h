@@ -29,6 +29,14 @@ void cli_tell_components(const char *name, double least_mm3, const cw_drop_count
 
 enum { CLI_SMOOTHED_TEXT = 256 };
 
+enum { CLI_HANDLES_TEXT = 320 };
+
+/* Writes the object "handles". */
+void cli_json_handles(cli_json *j, const cw_close_handles_facts *facts);
+
+/* Prints how many handles were closed, and why others are left. */
+void cli_handles_text(const cw_close_handles_facts *facts, char text[CLI_HANDLES_TEXT]);
+
 /* Writes the object "smooth". */
 void cli_json_smoothed(cli_json *j, const cw_smooth_facts *facts);
 

@@ -1,6 +1,20 @@
-/* The stages that move or cut the surface: smoothing, and the cut by a plane. */
+/* The stages that move or cut the surface: closed handles, smoothing, and the cut by a plane. */
 #include "core/base/status.h"
 #include "extract/pipeline/stages.h"
+
+cw_status cwi_close_handles(cwi_pipeline *p, cw_mesh *mesh, cw_error *err)
+{
+    cw_close_handles_desc desc = *p->desc->close_handles;
+    desc.threads = p->desc->extract.threads;
+    desc.progress = cwi_begin_stage(p, CW_STAGE_HANDLES, mesh->triangle_count, "triangle");
+    cw_mesh closed;
+    cw_status st = cw_mesh_close_handles(mesh, &desc, &closed, &p->facts.handles, err);
+    if (st != CW_OK)
+        return st;
+    cw_mesh_free(mesh);
+    *mesh = closed;
+    return CW_OK;
+}
 
 cw_status cwi_smooth(cwi_pipeline *p, cw_mesh *mesh, cw_error *err)
 {

@@ -30,6 +30,11 @@ static bool wants_voids_filled(const cw_pipeline_desc *d)
     return d->fill_voids;
 }
 
+static bool wants_handles_closed(const cw_pipeline_desc *d)
+{
+    return d->close_handles != NULL;
+}
+
 static bool wants_smoothing(const cw_pipeline_desc *d)
 {
     return d->smooth != NULL;
@@ -90,6 +95,7 @@ const cwi_stage cwi_recipe[CW_STAGE_COUNT] = {
     {CW_STAGE_MIN_VOLUME, wants_min_volume,     SPOOL | PARTS,  0,       false, cwi_drop_small},
     {CW_STAGE_LARGEST,    wants_largest,        WHOLE,          0,       false, cwi_keep_largest},
     {CW_STAGE_FILL_VOIDS, wants_voids_filled,   WHOLE,          0,       false, cwi_fill_voids},
+    {CW_STAGE_HANDLES,    wants_handles_closed, WHOLE | CLOSED, NORMALS, false, cwi_close_handles},
     {CW_STAGE_SMOOTH,     wants_smoothing,      WHOLE | CLOSED, NORMALS, false, cwi_smooth},
     {CW_STAGE_CUT,        wants_cut,            WHOLE | CLOSED, NORMALS, false, cwi_cut_surface},
     {CW_STAGE_SIMPLIFY,   wants_simplification, LABELS,         0,       false, cwi_simplify_surface},

@@ -91,6 +91,7 @@ cw_status cwi_extract_slices(cwi_pipeline *p, cw_mesh *mesh, cw_error *err);
 cw_status cwi_drop_small(cwi_pipeline *p, cw_mesh *mesh, cw_error *err);
 cw_status cwi_keep_largest(cwi_pipeline *p, cw_mesh *mesh, cw_error *err);
 cw_status cwi_fill_voids(cwi_pipeline *p, cw_mesh *mesh, cw_error *err);
+cw_status cwi_close_handles(cwi_pipeline *p, cw_mesh *mesh, cw_error *err);
 cw_status cwi_smooth(cwi_pipeline *p, cw_mesh *mesh, cw_error *err);
 cw_status cwi_cut_surface(cwi_pipeline *p, cw_mesh *mesh, cw_error *err);
 cw_status cwi_simplify_surface(cwi_pipeline *p, cw_mesh *mesh, cw_error *err);

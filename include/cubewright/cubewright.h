@@ -15,6 +15,7 @@
 #include <cubewright/field.h>
 #include <cubewright/filter.h>
 #include <cubewright/formats.h>
+#include <cubewright/handles.h>
 #include <cubewright/hard.h>
 #include <cubewright/label_table.h>
 #include <cubewright/labels.h>

@@ -5,6 +5,7 @@
 #include <cubewright/color.h>
 #include <cubewright/cut.h>
 #include <cubewright/extract.h>
+#include <cubewright/handles.h>
 #include <cubewright/labels.h>
 #include <cubewright/quality.h>
 #include <cubewright/simplify.h>
@@ -15,8 +16,9 @@
 extern "C" {
 #endif
 
-/* The stages: constant, and name. They run in this order. One that a later version adds gets the
- * next number, wherever it runs. */
+/* The stages: constant, and name. They run in this order, but that handles are closed between
+ * CW_STAGE_FILL_VOIDS and CW_STAGE_SMOOTH. One that a later version adds gets the next number, wherever it
+ * runs. */
 #define CW_STAGE_TABLE(X)                                                                      \
     X(CW_STAGE_VIEWS, "camera")                                                                \
     X(CW_STAGE_EXTRACT, "extract")                                                             \
@@ -30,7 +32,8 @@ extern "C" {
     X(CW_STAGE_LOD, "lod")                                                                     \
     X(CW_STAGE_NORMALS, "normals")                                                             \
     X(CW_STAGE_COLOR, "color_by")                                                              \
-    X(CW_STAGE_CHECK, "check")
+    X(CW_STAGE_CHECK, "check")                                                                 \
+    X(CW_STAGE_HANDLES, "close_handles")
 
 /* Identifies a stage. */
 typedef enum cw_stage {
@@ -96,24 +99,26 @@ typedef struct cw_pipeline_desc {
     size_t layers;           /* of slices that are extracted together; as cw_stream_desc */
     const char *spool_path;  /* of slices: temporary files stand in the folder of this path */
     cw_pipeline_watch watch; /* default: none */
+    const cw_close_handles_desc *close_handles; /* close its small handles and tunnels */
 } cw_pipeline_desc;
 
 /* Results of the stages that ran; those of others are zero. Zero-initialise the struct before it is
  * filled. */
 typedef struct cw_pipeline_facts {
-    uint32_t version;             /* 0: the first version of this struct */
-    unsigned ran;                 /* a bit 1u << stage for each stage that ran */
-    cw_extract_counts extracted;  /* of the surface as it came from the volume */
-    cw_drop_counts small;         /* CW_STAGE_MIN_VOLUME */
-    cw_drop_counts others;        /* CW_STAGE_LARGEST */
-    cw_drop_counts voids;         /* CW_STAGE_FILL_VOIDS */
-    cw_smooth_facts smoothed;     /* CW_STAGE_SMOOTH */
-    cw_cut_facts cut;             /* CW_STAGE_CUT */
-    size_t culled;                /* triangles: CW_STAGE_CULL */
-    size_t voxels, seen_voxels;   /* of all, and of the bricks that the views see */
-    cw_sample_facts color;        /* CW_STAGE_COLOR: of the surface given away last */
-    double color_low, color_high; /* the ends of its map */
-    cw_quality quality;           /* CW_STAGE_CHECK: of the surface given away last */
+    uint32_t version;               /* 0: the first version of this struct */
+    unsigned ran;                   /* a bit 1u << stage for each stage that ran */
+    cw_extract_counts extracted;    /* of the surface as it came from the volume */
+    cw_drop_counts small;           /* CW_STAGE_MIN_VOLUME */
+    cw_drop_counts others;          /* CW_STAGE_LARGEST */
+    cw_drop_counts voids;           /* CW_STAGE_FILL_VOIDS */
+    cw_smooth_facts smoothed;       /* CW_STAGE_SMOOTH */
+    cw_cut_facts cut;               /* CW_STAGE_CUT */
+    size_t culled;                  /* triangles: CW_STAGE_CULL */
+    size_t voxels, seen_voxels;     /* of all, and of the bricks that the views see */
+    cw_sample_facts color;          /* CW_STAGE_COLOR: of the surface given away last */
+    double color_low, color_high;   /* the ends of its map */
+    cw_quality quality;             /* CW_STAGE_CHECK: of the surface given away last */
+    cw_close_handles_facts handles; /* CW_STAGE_HANDLES */
 } cw_pipeline_facts;
 
 /* A finished surface, or a level of detail. */
@@ -154,7 +159,8 @@ CW_NODISCARD CW_API cw_status cw_pipeline_check(cw_surface_source source, unsign
  * ask for, and gives the result away: one surface, or each level of detail.
  *
  * Where it can, a surface is simplified slab by slab while it is extracted, and is never whole.
- * A simplified surface gets normals of the field, unless it was smoothed or cut.
+ * A simplified surface gets normals of the field, unless it was smoothed or cut, or
+ * its handles were closed.
  *
  * volume     borrowed; as in cw_extract()
  * extractor  of this volume, for one of several surfaces; NULL: this one by itself

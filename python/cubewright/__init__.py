@@ -20,6 +20,7 @@ from ._color import color_by
 from ._cut import Cut, cut
 from ._errors import Error, Status
 from ._extract import Extractor, LabelSurfaces, Patch, Settings, extract, extract_labels, extract_levels
+from ._handles import Closed, close_handles
 from ._library import lib as _lib
 from ._memory import memory_limit, memory_used
 from ._mesh import Mesh
@@ -39,6 +40,7 @@ __all__ = [
     "Atlas",
     "Baked",
     "Check",
+    "Closed",
     "Combined",
     "Cut",
     "Error",
@@ -64,6 +66,7 @@ __all__ = [
     "bake_normals",
     "boolean",
     "check",
+    "close_handles",
     "color_by",
     "cut",
     "extract",

@@ -50,6 +50,7 @@ CW_EXTRACT_MAX_SNAP = 0.5
 CW_FACE_COLORS = 'face_colors'
 CW_FEM_MAX_ASPECT = 10.0
 CW_FEM_MIN_ANGLE_DEG = 10.0
+CW_HANDLE_FRACTION = 0.03
 CW_NEEDLE_RATIO = 20.0
 CW_PRINT_MAX_MM = 400.0
 CW_PRINT_MIN_MM = 5.0
@@ -350,7 +351,8 @@ class cw_stage(enum.IntEnum):
     CW_STAGE_NORMALS = 10
     CW_STAGE_COLOR = 11
     CW_STAGE_CHECK = 12
-    CW_STAGE_COUNT = 13
+    CW_STAGE_HANDLES = 13
+    CW_STAGE_COUNT = 14
 
 
 class cw_surface_source(enum.IntEnum):
@@ -2223,6 +2225,52 @@ cw_format._fields_ = [
 ]
 
 
+class cw_close_handles_desc(Structure):
+    version: int
+    length_mm: float
+    threads: int
+    progress: Any
+
+
+cw_close_handles_desc._fields_ = [
+    ("version", c_uint32),
+    ("length_mm", c_double),
+    ("threads", c_int),
+    ("progress", cw_progress),
+]
+
+
+class cw_close_handles_facts(Structure):
+    length_mm: float
+    genus_before: int
+    genus_after: int
+    cut: int
+    filled: int
+    left_long: int
+    left_crossing: int
+    change_mm: float
+    triangles_before: int
+    triangles_after: int
+    components_before: int
+    components_after: int
+
+
+cw_close_handles_facts._fields_ = [
+    ("length_mm", c_double),
+    ("genus_before", c_size_t),
+    ("genus_after", c_size_t),
+    ("cut", c_size_t),
+    ("filled", c_size_t),
+    ("left_long", c_size_t),
+    ("left_crossing", c_size_t),
+    ("change_mm", c_double),
+    ("triangles_before", c_size_t),
+    ("triangles_after", c_size_t),
+    ("components_before", c_size_t),
+    ("components_after", c_size_t),
+]
+
+
 class cw_hard(Structure):
     name: bytes | None
     about: bytes | None
@@ -3118,6 +3166,7 @@ class cw_pipeline_desc(Structure):
     layers: int
     spool_path: bytes | None
     watch: Any
+    close_handles: Any
 
 
 cw_pipeline_desc._fields_ = [
@@ -3139,6 +3188,7 @@ cw_pipeline_desc._fields_ = [
     ("layers", c_size_t),
     ("spool_path", c_char_p),
     ("watch", cw_pipeline_watch),
+    ("close_handles", POINTER(cw_close_handles_desc)),
 ]
 
 
@@ -3158,6 +3208,7 @@ class cw_pipeline_facts(Structure):
     color_low: float
     color_high: float
     quality: Any
+    handles: Any
 
 
 cw_pipeline_facts._fields_ = [
@@ -3176,6 +3227,7 @@ cw_pipeline_facts._fields_ = [
     ("color_low", c_double),
     ("color_high", c_double),
     ("quality", cw_quality),
+    ("handles", cw_close_handles_facts),
 ]
 
 
@@ -3659,6 +3711,7 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "cw_mesh_format": (POINTER(cw_format), [c_char_p, c_char_p]),
     "cw_volume_format": (POINTER(cw_format), [c_char_p, c_char_p]),
     "cw_formats": (POINTER(cw_format), [POINTER(c_size_t)]),
+    "cw_mesh_close_handles": (c_int, [POINTER(cw_mesh), POINTER(cw_close_handles_desc), POINTER(cw_mesh), POINTER(cw_close_handles_facts), POINTER(cw_error)]),
     "cw_hard_at": (POINTER(cw_hard), [c_size_t]),
     "cw_hard_find": (c_bool, [c_char_p, POINTER(c_size_t)]),
     "cw_hard_stored": (c_double, [c_size_t, c_int, c_double]),

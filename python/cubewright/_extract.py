@@ -15,6 +15,7 @@ from . import _declarations as c
 from ._color import COLORMAPS
 from ._cut import describe_cut
 from ._errors import Error, Status, call
+from ._handles import describe_handles
 from ._library import lib
 from ._memory import Owner, unpack
 from ._mesh import Mesh
@@ -59,6 +60,7 @@ class Settings:
     min_volume: float | str = 0.0
     largest: int = 0
     fill_voids: bool = False
+    close_handles: float | str | None = None
     smooth: str | dict[str, Any] | None = None
     cut_plane: tuple[Sequence[float], Sequence[float]] | None = None
     simplify: int | float | str | None = None
@@ -91,6 +93,8 @@ class Settings:
             largest=take_count("largest", self.largest),
             fill_voids=take_flag("fill_voids", self.fill_voids),
         )
+        if self.close_handles is not None:
+            desc.close_handles = pointer(describe_handles(self.close_handles, volume=source))
         if self.smooth is not None:
             how = {"method": self.smooth} if isinstance(self.smooth, str) else self.smooth
             desc.smooth = pointer(describe_smoothing(volume=source, **how))
@@ -120,6 +124,7 @@ def extract(
     min_volume: float | str = 0.0,
     largest: int = 0,
     fill_voids: bool = False,
+    close_handles: float | str | None = None,
     smooth: str | dict[str, Any] | None = None,
     cut_plane: tuple[Sequence[float], Sequence[float]] | None = None,
     simplify: int | float | str | None = None,
@@ -150,6 +155,8 @@ def extract(
     min_volume  leave out components that enclose less, in mm3, or as a text with a unit: "2ml"
     largest     number of components to keep, those that enclose the most; 0: all
     fill_voids  leave out the cavities of solids, and all inside them
+    close_handles  a length: close handles with loops up to it; "auto": 3 % of the surface's diagonal. See
+                close_handles()
     smooth      a method, or a dict of the keywords of smooth(): {"method": "hc", "iterations": 5}
     cut_plane   (point, normal) as of cut(): what is above stays, and is closed flat
     simplify    a float: error limit in mm; a text: the same with its unit, "0.1mm" or "0.5vox"; an int:

@@ -210,17 +210,16 @@ static bool add_rim_points(const hole_fill *f, const cwi_boundary_loop *loop,
     return ok;
 }
 
-/* Divides the triangles of a patch, and moves its new points. */
-static bool shape_patch(const hole_fill *f, const cwi_boundary_loop *loop, bool is_fair,
-                        cwi_hole_patch *patch)
+bool cwi_patch_shape(cwi_hole_patch *patch, const cwi_boundary_loop *loop,
+                     const cwi_hole_mesh *around, bool is_fair)
 {
     bool ok = true;
     const double first = loop->size > LARGE_LOOP ? MAX_TIMES : 1;
     int passes = is_fair ? FIRST_PASSES : 1;
-    for (double times = first; ok && times >= 1 && f->kind != CWI_PATCH_PLAIN; times /= 2) {
+    for (double times = first; ok && times >= 1; times /= 2) {
         for (int n = 0; n < passes && ok; n++)
-            ok = cwi_patch_refine(patch, loop, &f->around, times) &&
-                 cwi_patch_fair(patch, loop, &f->around, is_fair, times < first || n > 0);
+            ok = cwi_patch_refine(patch, loop, around, times) &&
+                 cwi_patch_fair(patch, loop, around, is_fair, times < first || n > 0);
         passes = 1;
     }
     return ok;
@@ -259,7 +258,9 @@ static cw_status make_patch(const hole_fill *f, const cwi_rims *rims, double dia
     const bool is_fair =
         is_single && f->kind == CWI_PATCH_FAIR &&
         !(diagonal > MAX_DOME * cwi_distance(f->low, f->high) && is_cut_off(f, rims));
-    return shape_patch(f, &loop, is_fair, patch) ? CW_OK : cwi_fail_memory(err);
+    if (f->kind == CWI_PATCH_PLAIN)
+        return CW_OK;
+    return cwi_patch_shape(patch, &loop, &f->around, is_fair) ? CW_OK : cwi_fail_memory(err);
 }
 
 /* Adds a patch to those that the mesh gets. */

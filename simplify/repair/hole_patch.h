@@ -88,4 +88,9 @@ bool cwi_patch_refine(cwi_hole_patch *patch, const cwi_boundary_loop *loop,
 bool cwi_patch_fair(cwi_hole_patch *patch, const cwi_boundary_loop *loop,
                     const cwi_hole_mesh *around, bool is_fair, bool is_later);
 
+/* Divides the triangles of a patch, and moves its new points: does both of the above, for large rims
+ * from coarse to fine. */
+bool cwi_patch_shape(cwi_hole_patch *patch, const cwi_boundary_loop *loop,
+                     const cwi_hole_mesh *around, bool is_fair);
+
 #endif

@@ -62,6 +62,9 @@ class Surfaces(Case):
         smooth = {"method": "hc", "iterations": 4}
         smoothed = cw.extract(head, 300, min_volume=100, largest=20, fill_voids=True, smooth=smooth)
         self.same_mesh(smoothed, cw.smooth(mesh, **smooth).mesh)
+        closed = cw.close_handles(mesh, "6mm")
+        self.assertGreater(closed.cut + closed.filled, 5)
+        self.same_mesh(cw.extract(head, 300, min_volume=100, largest=20, fill_voids=True, close_handles=6), closed.mesh)
         plane = ((0, 0, 10), (0, 0.5, 1))
         whole = cw.extract(head, 300)
         self.same_mesh(cw.extract(head, 300, cut_plane=plane), cw.cut(whole, *plane).mesh)

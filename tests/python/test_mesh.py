@@ -207,6 +207,30 @@ class Coordinates(Case):
         with self.fails(cw.Status.CANCELLED):
             cw.bake_normals(low, low, size=64, progress=lambda *_: False)
 
+    def test_small_handles_are_closed(self):
+        noise = cw.make("sphere", dims=32, noise=6)
+        mesh = cw.extract(noise, 0, largest=1, fill_voids=True)
+        first = mesh.vertices.copy()
+        found = cw.close_handles(mesh, "20mm", threads=2)
+        self.assertIsInstance(found, cw.Closed)
+        np.testing.assert_array_equal(mesh.vertices, first)
+        self.assertGreater(found.handles_before, 50)
+        self.assertEqual((found.handles_after, found.left_long, found.left_crossing), (0, 0, 0))
+        self.assertEqual(found.cut + found.filled, found.handles_before)
+        self.assertTrue(0 < found.change < 3)
+        checked = cw.check(found.mesh).quality
+        self.assertEqual((checked["genus"], checked["open_edges"]), (0, 0))
+        short = cw.close_handles(mesh)
+        self.assertGreater(short.handles_after, 0)
+        self.assertAlmostEqual(short.length, cw.close_handles(mesh, "3%").length)
+        same = cw.close_handles(found.mesh, 5.0)
+        self.same_mesh(same.mesh, found.mesh)
+        for wrong in (-1, 0, "4", "4vox", float("nan")):
+            self.assertRaises(ValueError, lambda: cw.close_handles(mesh, wrong))
+        self.assertRaises(TypeError, lambda: cw.close_handles(first))
+        with self.fails(cw.Status.CANCELLED):
+            cw.close_handles(mesh, progress=lambda *_: False)
+
     def test_volumes_color_meshes(self):
         ball = make_ball()
         mesh = cw.extract(ball, 0)

@@ -65,6 +65,11 @@ static cw_mesh make_by_hand(const cw_volume *v, const cw_pipeline_desc *d)
         assert_ok(cw_mesh_keep_largest(&mesh, d->largest, NULL, &err), err);
     if (d->fill_voids)
         assert_ok(cw_mesh_fill_voids(&mesh, 1, NULL, &err), err);
+    if (d->close_handles) {
+        assert_ok(cw_mesh_close_handles(&mesh, d->close_handles, &cut, NULL, &err), err);
+        cw_mesh_free(&mesh);
+        mesh = cut;
+    }
     if (d->smooth)
         assert_ok(cw_mesh_smooth(&mesh, d->smooth, NULL, &err), err);
     if (d->cut) {
@@ -74,7 +79,7 @@ static cw_mesh make_by_hand(const cw_volume *v, const cw_pipeline_desc *d)
     }
     if (d->simplify)
         simplify_by_hand(&mesh, d->simplify);
-    if (d->simplify && !d->smooth && !d->cut)
+    if (d->simplify && !d->close_handles && !d->smooth && !d->cut)
         assert_ok(cw_extract_normals(v, NULL, &mesh, &err), err);
     if (d->color) {
         assert_ok(cw_mesh_sample(&mesh, d->color->user, NULL, &sampled, &err), err);
@@ -97,12 +102,13 @@ static void stages_are_the_calls_one_after_the_other(void **state)
 {
     (void)state;
     cw_volume volume = make_noisy(), paint = make_paint();
+    const cw_close_handles_desc handles = {.length_mm = 8};
     const cw_smooth_desc smooth = {.method = CW_SMOOTH_HC, .iterations = 4};
     const cw_cut_desc cut = {
         .point = {0, 0, 40}, .normal = {0, 0, 1}, .point_is_percent = true};
     const cw_simplify_desc simplify = {.triangles = 1500};
     const cw_pipeline_color color = {.open = open_paint, .user = &paint};
-    for (unsigned bits = 0; bits < 128; bits++) {
+    for (unsigned bits = 0; bits < 256; bits++) {
         cw_pipeline_desc d = {.extract = {.isovalue = ISO},
                               .min_volume_mm3 = bits & 1 ? 100 : 0,
                               .largest = bits & 2 ? 30 : 0,
@@ -111,12 +117,13 @@ static void stages_are_the_calls_one_after_the_other(void **state)
                               .cut = bits & 16 ? &cut : NULL,
                               .simplify =
                                   bits & 32 && cw_simplify_available() ? &simplify : NULL,
-                              .color = bits & 64 ? &color : NULL};
-        const bool by_slabs = d.simplify && !(bits & 31);
+                              .color = bits & 64 ? &color : NULL,
+                              .close_handles = bits & 128 ? &handles : NULL};
+        const bool by_slabs = d.simplify && !(bits & (31 | 128));
         cw_pipeline_facts facts = {0};
         cw_mesh mesh;
         cw_error err = {0};
-        if (by_slabs || (test_is_short() && bits * 37 % 128 >= 32))
+        if (by_slabs || (test_is_short() && bits * 37 % 256 >= 48))
             continue;
         cw_mesh expected = make_by_hand(&volume, &d);
         assert_ok(cw_pipeline_mesh(&volume, NULL, &d, &mesh, &facts, &err), err);
@@ -126,6 +133,7 @@ static void stages_are_the_calls_one_after_the_other(void **state)
         assert_int_equal(facts.ran >> CW_STAGE_MIN_VOLUME & 1, bits & 1);
         assert_true(!(bits & 1) || facts.small.dropped > 0);
         assert_true(!(bits & 2) || facts.others.kept > 0);
+        assert_true(!(bits & 128) || facts.handles.cut + facts.handles.filled > 0);
         assert_true(!(bits & 8) || facts.smoothed.max_mm > 0);
         assert_true(!(bits & 16) || facts.cut.area_mm2 > 0);
         cw_mesh_free(&expected);
@@ -364,17 +372,17 @@ static const struct excluded {
 } EXCLUDED[CW_SOURCE_COUNT] = {
     {CW_SOURCE_MEMORY, 0},
     {CW_SOURCE_SLICES, 1u << CW_STAGE_VIEWS | 1u << CW_STAGE_LARGEST |
-                           1u << CW_STAGE_FILL_VOIDS | 1u << CW_STAGE_SMOOTH |
-                           1u << CW_STAGE_CUT | 1u << CW_STAGE_CULL | 1u << CW_STAGE_LOD |
-                           1u << CW_STAGE_COLOR},
+                           1u << CW_STAGE_FILL_VOIDS | 1u << CW_STAGE_HANDLES |
+                           1u << CW_STAGE_SMOOTH | 1u << CW_STAGE_CUT | 1u << CW_STAGE_CULL |
+                           1u << CW_STAGE_LOD | 1u << CW_STAGE_COLOR},
     {CW_SOURCE_PARTS, 1u << CW_STAGE_VIEWS | 1u << CW_STAGE_LARGEST |
-                          1u << CW_STAGE_FILL_VOIDS | 1u << CW_STAGE_SMOOTH |
-                          1u << CW_STAGE_CUT | 1u << CW_STAGE_CULL | 1u << CW_STAGE_LOD |
-                          1u << CW_STAGE_COLOR | 1u << CW_STAGE_SIMPLIFY},
+                          1u << CW_STAGE_FILL_VOIDS | 1u << CW_STAGE_HANDLES |
+                          1u << CW_STAGE_SMOOTH | 1u << CW_STAGE_CUT | 1u << CW_STAGE_CULL |
+                          1u << CW_STAGE_LOD | 1u << CW_STAGE_COLOR | 1u << CW_STAGE_SIMPLIFY},
     {CW_SOURCE_LABELS, 1u << CW_STAGE_VIEWS | 1u << CW_STAGE_MIN_VOLUME |
                            1u << CW_STAGE_LARGEST | 1u << CW_STAGE_FILL_VOIDS |
-                           1u << CW_STAGE_SMOOTH | 1u << CW_STAGE_CUT | 1u << CW_STAGE_CULL |
-                           1u << CW_STAGE_COLOR},
+                           1u << CW_STAGE_HANDLES | 1u << CW_STAGE_SMOOTH | 1u << CW_STAGE_CUT |
+                           1u << CW_STAGE_CULL | 1u << CW_STAGE_COLOR},
 };
 
 static void sources_exclude_what_they_cannot_give(void **state)
@@ -405,6 +413,7 @@ static void stages_exclude_each_other(void **state)
         cw_surface_source source;
         cw_stage first, second;
     } rows[] = {
+        {CW_SOURCE_MEMORY, CW_STAGE_CULL, CW_STAGE_HANDLES},
         {CW_SOURCE_MEMORY, CW_STAGE_CULL, CW_STAGE_SMOOTH},
         {CW_SOURCE_MEMORY, CW_STAGE_CULL, CW_STAGE_CUT},
         {CW_SOURCE_MEMORY, CW_STAGE_LOD, CW_STAGE_SIMPLIFY},
