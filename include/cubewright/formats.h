@@ -464,7 +464,7 @@ CW_NODISCARD CW_API cw_status cw_mesh_read(const char *path, const cw_mesh_read_
 /* A picture on a surface: the bytes of its file, PNG or JPEG. */
 typedef struct cw_texture {
     const uint8_t *bytes; /* borrowed; NULL: none */
-    size_t size;
+    size_t size;          /* number of bytes */
 } cw_texture;
 
 /* The pictures on a surface, by the texture coordinates of its mesh. */

@@ -104,13 +104,16 @@ CW_NODISCARD CW_API cw_status cw_image_write(const char *path, const cw_image *i
                                              cw_error *err);
 
 /* Makes the bytes of a PNG file in memory.
+ * image     borrowed
  * is_color  it is tagged as sRGB; numbers such as normals are not
- * bytes     set to *size of them; free them with cw_bytes_free()
+ * bytes     set to the bytes; free them with cw_bytes_free()
+ * size      set to their number
  * Returns   as cw_image_write() */
 CW_NODISCARD CW_API cw_status cw_image_encode(const cw_image *image, bool is_color,
                                               uint8_t **bytes, size_t *size, cw_error *err);
 
-/* Frees the bytes of a file in memory. Harmless on NULL. */
+/* Frees the bytes of a file in memory.
+ * bytes  those of cw_image_encode(), or NULL */
 CW_API void cw_bytes_free(uint8_t *bytes);
 
 #ifdef __cplusplus
