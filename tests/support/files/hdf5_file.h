@@ -10,7 +10,7 @@
 #include <hdf5.h>
 #include <string.h>
 
-enum { HDF5_RANK = 5 };
+enum { HDF5_RANK = 6 };
 
 typedef struct hdf5_file {
     hid_t file, group; /* group: VTKHDF */

@@ -17,26 +17,8 @@ static const cw_attribute coordinates = {.name = CW_TEXTURE_COORDINATES,
 static void make_textured(cw_mesh *cube)
 {
     cw_error err = {0};
-    cw_mesh borrowed;
-    test_make_cube(&borrowed);
-    memset(cube, 0, sizeof *cube);
-    cube->vertex_count = borrowed.vertex_count;
-    cube->triangle_count = borrowed.triangle_count;
-    cube->positions = malloc(12 * cube->vertex_count);
-    cube->triangles = malloc(12 * cube->triangle_count);
-    assert_true(cube->positions && cube->triangles);
-    memcpy(cube->positions, borrowed.positions, 12 * cube->vertex_count);
-    memcpy(cube->triangles, borrowed.triangles, 12 * cube->triangle_count);
+    test_make_cube(cube);
     assert_ok(cw_mesh_atlas(cube, &(cw_atlas_desc){.size = 256}, NULL, &err), err);
-}
-
-static void free_textured(cw_mesh *cube)
-{
-    free(cube->positions);
-    free(cube->triangles);
-    cube->positions = NULL;
-    cube->triangles = NULL;
-    cw_mesh_free(cube);
 }
 
 static char *write_and_read(const cw_mesh *mesh, const char *name, const cw_write_desc *desc)
@@ -80,7 +62,7 @@ static void obj_names_the_place_of_each_corner(void **state)
         assert_true(count > 8 && count <= 36);
         free(text);
     }
-    free_textured(&cube);
+    cw_mesh_free(&cube);
 }
 
 static size_t count_words(const char *text, const char *word)
@@ -120,7 +102,7 @@ static void gltf_splits_vertices_at_seams(void **state)
         cw_mesh_free(&back);
     }
     cw_mesh_free(&split);
-    free_textured(&cube);
+    cw_mesh_free(&cube);
 }
 
 /* More colours than groups: vertices are split at seams, then by colour, and keep their coordinates. */
@@ -151,7 +133,7 @@ static void colours_of_faces_and_coordinates_go_together(void **state)
         assert_int_equal(count_words(text, "\"TEXCOORD_0\""), by_meshopt ? 1 : 12);
         free(text);
     }
-    free_textured(&cube);
+    cw_mesh_free(&cube);
 }
 
 static void coordinates_of_vertices_are_written_as_they_are(void **state)
@@ -170,7 +152,7 @@ static void coordinates_of_vertices_are_written_as_they_are(void **state)
         free(text);
     }
     cw_mesh_free(&split);
-    free_textured(&cube);
+    cw_mesh_free(&cube);
 }
 
 /* A normal map is in the file once, with tangents where no Draco is, and needs coordinates. */
@@ -213,7 +195,7 @@ static void normal_maps_are_embedded(void **state)
     }
     assert_ok(cw_parts_write_loss("n.obj", parts, 1, NULL, &loss, &err), err);
     assert_int_equal(loss.dropped & CW_KEEPS_PICTURES, CW_KEEPS_PICTURES);
-    free_textured(&cube);
+    cw_mesh_free(&cube);
 }
 
 static void other_formats_tell_what_they_lose(void **state)
@@ -243,7 +225,7 @@ static void other_formats_tell_what_they_lose(void **state)
     assert_ok(cw_mesh_write_loss("a.obj", &cube, NULL, &loss, &err), err);
     assert_int_equal(loss.dropped & (CW_KEEPS_TEXTURE | CW_KEEPS_ATTRIBUTES),
                      CW_KEEPS_ATTRIBUTES);
-    free_textured(&cube);
+    cw_mesh_free(&cube);
 }
 
 int main(void)
