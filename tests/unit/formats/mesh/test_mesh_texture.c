@@ -1,5 +1,6 @@
 /* Texture coordinates in written files: glTF and OBJ keep them, also compressed and with colours. */
 #include "support/meshes.h"
+#include "support/solids.h"
 
 #include "core/texture/split_seams.h"
 
@@ -17,7 +18,8 @@ static const cw_attribute coordinates = {.name = CW_TEXTURE_COORDINATES,
 static void make_textured(cw_mesh *cube)
 {
     cw_error err = {0};
-    test_make_cube(cube);
+    *cube = test_make_boxes(1);
+    test_add_box(cube, (const double[]){0, 0, 0}, (const double[]){1, 1, 1}, false);
     assert_ok(cw_mesh_atlas(cube, &(cw_atlas_desc){.size = 256}, NULL, &err), err);
 }
 
