@@ -171,18 +171,26 @@ static cw_status check_values(cli_mesh_run *r, cw_error *err)
 
 /* --- work --------------------------------------------------------------------------------- */
 
-/* Joins the surfaces of all pieces, without their attributes. */
+/* Adds a mesh to those joined before, with its normals if asked for, and one attribute or none. */
+static cw_status join_mesh(const cw_mesh *mesh, bool normals, cw_attribute *attribute,
+                           bool is_first, cw_mesh *all, cw_error *err)
+{
+    cw_mesh bare = *mesh;
+    bare.normals = normals ? mesh->normals : NULL;
+    bare.scalars = NULL;
+    bare.colors = NULL;
+    bare.labels = NULL;
+    bare.attributes = attribute;
+    bare.attribute_count = attribute ? 1 : 0;
+    return is_first ? cwi_mesh_copy(&bare, all, err) : cwi_mesh_append(all, &bare, err);
+}
+
+/* Joins the surfaces of all pieces. */
 static cw_status join_pieces(const cli_pieces *p, cw_mesh *all, cw_error *err)
 {
     cw_status st = CW_OK;
-    for (size_t n = 0; n < p->count && st == CW_OK; n++) {
-        cw_mesh bare = p->piece[n].input;
-        bare.normals = bare.scalars = NULL;
-        bare.colors = NULL;
-        bare.labels = NULL;
-        bare.attribute_count = 0;
-        st = n ? cwi_mesh_append(all, &bare, err) : cwi_mesh_copy(&bare, all, err);
-    }
+    for (size_t n = 0; n < p->count && st == CW_OK; n++)
+        st = join_mesh(&p->piece[n].input, false, NULL, n == 0, all, err);
     return st;
 }
 
@@ -234,14 +242,9 @@ static cw_status join_finished(cli_pieces *p, cw_mesh *all, cw_error *err)
         cw_mesh *out = &p->piece[n].out;
         if (!out->normals)
             st = cw_mesh_normals(out, err);
-        cw_mesh bare = *out;
-        bare.scalars = NULL;
-        bare.colors = NULL;
-        bare.labels = NULL;
-        bare.attributes = cw_mesh_attribute_find(out, CW_TEXTURE_COORDINATES);
-        bare.attribute_count = 1;
         if (st == CW_OK)
-            st = n ? cwi_mesh_append(all, &bare, err) : cwi_mesh_copy(&bare, all, err);
+            st = join_mesh(out, true, cw_mesh_attribute_find(out, CW_TEXTURE_COORDINATES),
+                           n == 0, all, err);
     }
     return st;
 }

@@ -91,6 +91,21 @@ const cw_attribute *cwi_texture_of(const cw_mesh *mesh)
                : NULL;
 }
 
+cw_status cwi_texture_add(cw_mesh *mesh, cw_on on, float (**uv)[2], cw_error *err)
+{
+    const cw_attribute like = {.name = CW_TEXTURE_COORDINATES,
+                               .on = on,
+                               .type = CW_F32,
+                               .components = 2,
+                               .interpolation = CW_INTERPOLATE_LINEAR};
+    cw_attribute *added;
+    cw_mesh_attribute_remove(mesh, CW_TEXTURE_COORDINATES);
+    cw_status st = cw_mesh_attribute_add(mesh, &like, &added, err);
+    if (st == CW_OK)
+        *uv = added->data;
+    return st;
+}
+
 cw_status cwi_seams_find(const cw_mesh *mesh, cwi_texture_seams *seams, cw_error *err)
 {
     const size_t corners = 3 * mesh->triangle_count, most = mesh->vertex_count + corners;
@@ -138,16 +153,11 @@ static cw_status copy_mesh(const cwi_texture_seams *s, const cw_mesh *like, cw_m
 static cw_status copy_coordinates(const cwi_texture_seams *s, const float *uv, cw_mesh *copy,
                                   cw_error *err)
 {
-    const cw_attribute like = {.name = CW_TEXTURE_COORDINATES,
-                               .on = CW_ON_VERTICES,
-                               .type = CW_F32,
-                               .components = 2,
-                               .interpolation = CW_INTERPOLATE_LINEAR};
-    cw_attribute *added;
-    cw_status st = cw_mesh_attribute_add(copy, &like, &added, err);
+    float(*added)[2];
+    cw_status st = cwi_texture_add(copy, CW_ON_VERTICES, &added, err);
     for (size_t v = 0; st == CW_OK && v < s->count; v++)
         if (s->corner[v] != CWI_NO_CORNER)
-            memcpy((float *)added->data + 2 * v, uv + 2 * (size_t)s->corner[v], 2 * sizeof *uv);
+            memcpy(added[v], uv + 2 * (size_t)s->corner[v], sizeof *added);
     return st;
 }
 

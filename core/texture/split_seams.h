@@ -19,6 +19,12 @@ typedef struct cwi_texture_seams {
 /* Returns the texture coordinates of a mesh: two floats for each corner, or for each vertex; NULL: none. */
 const cw_attribute *cwi_texture_of(const cw_mesh *mesh);
 
+/* Gives a mesh texture coordinates, all 0, in place of those that it has.
+ * on        CW_ON_CORNERS or CW_ON_VERTICES
+ * uv        set to the values
+ * Returns   CW_ERR_NO_MEMORY */
+CW_NODISCARD cw_status cwi_texture_add(cw_mesh *mesh, cw_on on, float (**uv)[2], cw_error *err);
+
 /* Numbers the places of a mesh with texture coordinates for each corner.
  * Returns  CW_ERR_NO_MEMORY; free with cwi_seams_free() in any case */
 CW_NODISCARD cw_status cwi_seams_find(const cw_mesh *mesh, cwi_texture_seams *seams,

@@ -11,11 +11,6 @@
 /* Triangles that are lower than this share of their longest side are stretched in any way. */
 static const double THINNEST = 1e-7;
 
-static uint32_t next_corner(uint32_t c)
-{
-    return c % 3 == 2 ? c - 2 : c + 1;
-}
-
 /* --- sheets ------------------------------------------------------------------------------- */
 
 /* Joins the sides of edges that exactly two triangles pass, in opposite directions. */
@@ -32,8 +27,8 @@ static bool join_sides(cwi_sheet *sheet)
     for (size_t n = 0, along; n < count; n += along) {
         along = cwi_sides_along(sides, count, n);
         const uint32_t a = sides[n].corner, b = sides[n + (along == 2)].corner;
-        if (along == 2 && a / 3 != b / 3 && vertex[a] == vertex[next_corner(b)] &&
-            vertex[b] == vertex[next_corner(a)])
+        if (along == 2 && a / 3 != b / 3 && vertex[a] == vertex[cwi_corner_next(b)] &&
+            vertex[b] == vertex[cwi_corner_next(a)])
             cwi_twins_join(sheet->twin, a, b);
     }
     cwi_free(sides);
@@ -87,8 +82,8 @@ static bool number_vertices(cwi_chart *chart, const cwi_sheet *sheet, const uint
                 continue;
             }
             const uint32_t other = 3 * at + twin % 3;
-            cwi_sets_join(sets, mine, next_corner(other));
-            cwi_sets_join(sets, next_corner(mine), other);
+            cwi_sets_join(sets, mine, cwi_corner_next(other));
+            cwi_sets_join(sets, cwi_corner_next(mine), other);
         }
     for (uint32_t c = 0; c < 3 * chart->triangles; c++) {
         const uint32_t set = cwi_sets_find(sets, c);
@@ -143,7 +138,7 @@ bool cwi_chart_init(cwi_chart *chart, const cwi_sheet *sheet, const uint32_t *tr
     for (size_t n = chart->border_count; n-- > 0;) { /* corners become pairs of vertices */
         const uint32_t c = chart->border[n];
         chart->border[2 * n] = chart->corners[c];
-        chart->border[2 * n + 1] = chart->corners[next_corner(c)];
+        chart->border[2 * n + 1] = chart->corners[cwi_corner_next(c)];
     }
     chart->uv = cwi_alloc_array(chart->vertices, sizeof *chart->uv);
     return chart->uv;

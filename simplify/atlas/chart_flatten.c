@@ -3,6 +3,7 @@
 #include "simplify/atlas/chart_plane.h"
 
 #include "core/base/memory.h"
+#include "core/geometry/triangle.h"
 #include "core/geometry/vec3.h"
 
 #include <string.h>
@@ -73,7 +74,7 @@ static void average(cwi_chart *chart, double (*sum)[3], const bool *is_outer)
     memset(sum, 0, chart->vertices * sizeof *sum);
     for (size_t c = 0; c < 3 * chart->triangles; c++) {
         const uint32_t from = chart->corners[c],
-                       to = chart->corners[c % 3 == 2 ? c - 2 : c + 1];
+                       to = chart->corners[cwi_corner_next((uint32_t)c)];
         for (int k = 0; k < 2 && !is_outer[from]; k++)
             sum[from][k] += chart->uv[to][k];
         sum[from][2] += !is_outer[from];

@@ -4,6 +4,7 @@
 #include "core/base/memory.h"
 #include "core/base/parallel.h"
 #include "core/base/status.h"
+#include "core/geometry/triangle.h"
 #include "core/geometry/vec3.h"
 #include "core/mesh/corner_table.h"
 
@@ -78,12 +79,12 @@ static bool has_failed(const chart_merging *m, uint32_t a, uint32_t b)
            bsearch(&key, m->failed, m->failed_count, sizeof key, compare_keys);
 }
 
-static double length_of_side(const cwi_sheet *sheet, size_t corner)
+static double length_of_side(const cwi_sheet *sheet, uint32_t corner)
 {
     const uint32_t *v = sheet->mesh->triangles;
-    const size_t next = corner % 3 == 2 ? corner - 2 : corner + 1;
-    return sqrt(cwi_point_distance_sq(sheet->mesh->positions + 3 * (size_t)v[corner],
-                                      sheet->mesh->positions + 3 * (size_t)v[next]));
+    return sqrt(
+        cwi_point_distance_sq(sheet->mesh->positions + 3 * (size_t)v[corner],
+                              sheet->mesh->positions + 3 * (size_t)v[cwi_corner_next(corner)]));
 }
 
 /* Lists the sides between charts, and measures outlines. */
@@ -101,7 +102,7 @@ static bool list_sides(chart_merging *m, double *outline)
                            other = twin == CWI_NO_CORNER ? UINT32_MAX : m->owner[twin / 3];
             if (other == n)
                 continue;
-            const double length = length_of_side(m->sheet, corner);
+            const double length = length_of_side(m->sheet, (uint32_t)corner);
             outline[n] += length;
             if (other == UINT32_MAX || other < n || has_failed(m, n, other))
                 continue;

@@ -4,6 +4,7 @@
 #include "core/base/memory.h"
 #include "core/base/parallel.h"
 #include "core/base/status.h"
+#include "core/geometry/triangle.h"
 #include "core/mesh/corner_table.h"
 #include "core/mesh/mesh_attributes.h"
 #include "core/texture/split_seams.h"
@@ -155,8 +156,7 @@ static double signed_area(const float (*uv)[2])
 /* Returns true if the two triangles along a side lie side by side in the texture, too. */
 static bool is_joined(const float (*uv)[2], uint32_t corner, uint32_t twin)
 {
-    const uint32_t after = corner % 3 == 2 ? corner - 2 : corner + 1,
-                   twin_after = twin % 3 == 2 ? twin - 2 : twin + 1;
+    const uint32_t after = cwi_corner_next(corner), twin_after = cwi_corner_next(twin);
     return uv[corner][0] == uv[twin_after][0] && uv[corner][1] == uv[twin_after][1] &&
            uv[after][0] == uv[twin][0] && uv[after][1] == uv[twin][1];
 }
@@ -199,21 +199,6 @@ static cw_status count_vertices(const cw_mesh *mesh, cw_atlas_facts *facts, cw_e
     return st;
 }
 
-static cw_status add_coordinates(cw_mesh *mesh, float (**uv)[2], cw_error *err)
-{
-    const cw_attribute like = {.name = CW_TEXTURE_COORDINATES,
-                               .on = CW_ON_CORNERS,
-                               .type = CW_F32,
-                               .components = 2,
-                               .interpolation = CW_INTERPOLATE_LINEAR};
-    cw_attribute *added;
-    cw_mesh_attribute_remove(mesh, CW_TEXTURE_COORDINATES);
-    cw_status st = cw_mesh_attribute_add(mesh, &like, &added, err);
-    if (st == CW_OK)
-        *uv = added->data;
-    return st;
-}
-
 /* --- the whole ---------------------------------------------------------------------------- */
 
 static cw_status check_settings(const cw_atlas_desc *d, cw_error *err)
@@ -247,7 +232,7 @@ static cw_status pack_and_set(cw_mesh *mesh, const charting *c, const cw_atlas_d
     if (st == CW_OK)
         st = cwi_charts_pack(&packing, c->charts, c->chart_count, &d->progress, err);
     if (st == CW_OK)
-        st = add_coordinates(mesh, &uv, err);
+        st = cwi_texture_add(mesh, CW_ON_CORNERS, &uv, err);
     if (st == CW_OK) {
         set_coordinates(c, &packing, uv);
         if (facts) {

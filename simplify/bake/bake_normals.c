@@ -31,7 +31,9 @@ typedef struct row_facts {
 } row_facts;
 
 typedef struct baking {
-    cw_mesh mesh, full;   /* copies: vertices split at seams; with normals */
+    cw_mesh mesh;         /* a copy, with vertices split at seams */
+    const cw_mesh *full;  /* with normals */
+    cw_mesh own;          /* the copy that full is, where it had none; or empty */
     float (*tangents)[4]; /* vertices of mesh */
     cwi_boxes tree;       /* of full */
     uint32_t size;
@@ -57,7 +59,7 @@ typedef struct facing_search {
 static void measure_facing(void *context, size_t slot, double *distance_sq)
 {
     facing_search *s = context;
-    const cw_mesh *m = &s->b->full;
+    const cw_mesh *m = s->b->full;
     const uint32_t t = s->b->tree.order[slot], *v = m->triangles + 3 * (size_t)t;
     const cwi_facet_view f =
         cwi_facet_look(m->positions + 3 * (size_t)v[0], m->positions + 3 * (size_t)v[1],
@@ -90,15 +92,15 @@ static uint32_t find_facing(const baking *b, const double point[3], const double
 static bool find_normal(const baking *b, uint32_t triangle, const double point[3],
                         double normal[3])
 {
-    const uint32_t *v = b->full.triangles + 3 * (size_t)triangle;
-    const float *p = b->full.positions;
+    const uint32_t *v = b->full->triangles + 3 * (size_t)triangle;
+    const float *p = b->full->positions;
     double weights[3];
     cwi_facet_nearest(p + 3 * (size_t)v[0], p + 3 * (size_t)v[1], p + 3 * (size_t)v[2], point,
                       weights);
     for (int k = 0; k < 3; k++) {
         normal[k] = 0;
         for (int c = 0; c < 3; c++)
-            normal[k] += weights[c] * (double)b->full.normals[3 * (size_t)v[c] + (size_t)k];
+            normal[k] += weights[c] * (double)b->full->normals[3 * (size_t)v[c] + (size_t)k];
     }
     return cwi_normalise(normal);
 }
@@ -218,12 +220,13 @@ static cw_status prepare(baking *b, const cw_mesh *mesh, const cw_mesh *full,
     const bool at_corners = cwi_texture_of(mesh)->on == CW_ON_CORNERS;
     cw_status st =
         at_corners ? cwi_split_seams(mesh, &b->mesh, err) : cwi_mesh_copy(mesh, &b->mesh, err);
-    if (st == CW_OK)
-        st = cwi_mesh_copy(full, &b->full, err);
+    b->full = full->normals ? full : &b->own;
     if (st == CW_OK && !full->normals)
-        st = cw_mesh_normals(&b->full, err);
+        st = cwi_mesh_copy(full, &b->own, err);
+    if (st == CW_OK && !full->normals)
+        st = cw_mesh_normals(&b->own, err);
     if (st == CW_OK)
-        st = cwi_closest_build(&b->full, &b->tree, err);
+        st = cwi_closest_build(b->full, &b->tree, err);
     if (st != CW_OK)
         return st;
     b->size = d->size;
@@ -300,7 +303,7 @@ cw_status cw_bake_normals(const cw_mesh *mesh, const cw_mesh *full, const cw_bak
     if (st == CW_OK && facts)
         sum_facts(&b, facts);
     cw_mesh_free(&b.mesh);
-    cw_mesh_free(&b.full);
+    cw_mesh_free(&b.own);
     cwi_boxes_free(&b.tree);
     cwi_free(b.tangents);
     cwi_free(b.triangle);
