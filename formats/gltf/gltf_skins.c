@@ -26,7 +26,7 @@ bool cwi_gltf_is_skinned(const cwi_gltf_reader *r, const cwi_gltf_node *node)
 
 /* --- joints ------------------------------------------------------------------------------ */
 
-/* Finds the parent of each node, -1 where there is none. */
+/* Sets the parent of each node; a root has -1. */
 static int *find_parents(const cwi_gltf_scene *scene)
 {
     int *parents = cwi_alloc_array(scene->node_count, sizeof *parents);

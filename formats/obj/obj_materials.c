@@ -41,7 +41,8 @@ static cw_status add_material(cwi_obj_materials *m, const char *name, cw_error *
     return CW_OK;
 }
 
-/* Reads up to three numbers; one stands for all three. Other words, as of a spectral curve, are none. */
+/* Reads up to three numbers, and counts them. One alone counts for all three. A word, as of a spectral
+ * curve, is not read. */
 static cw_status read_numbers(cwi_scan *s, double number[3], int *count, cw_error *err)
 {
     cwi_word word;

@@ -28,7 +28,7 @@ typedef struct cwi_obj_materials {
 CW_NODISCARD cw_status cwi_obj_read_materials(cwi_obj_materials *m, const char *name,
                                               cw_error *err);
 
-/* Finds a material by its name; returns NULL if there is none. */
+/* Finds a material by its name. Returns NULL if no material has it. */
 const cwi_obj_material *cwi_obj_find_material(const cwi_obj_materials *m, const char *name);
 
 void cwi_obj_materials_free(cwi_obj_materials *m);

@@ -96,7 +96,7 @@ static void list_volumes(const cwi_vtk_blocks *b, char *text, size_t size)
                                      b->paths.items[n]);
 }
 
-/* Finds the block that a name begins with, and the name of the array behind it: NULL, there is none.
+/* Finds the block that a name begins with. Sets *array to what follows it, the name of an array, or to NULL.
  * The longest path counts. Returns the number of blocks if no name fits. */
 static size_t find_block(const cwi_vtk_blocks *b, const char *name, const char **array)
 {

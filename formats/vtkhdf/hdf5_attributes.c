@@ -5,7 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Returns the number of values of an attribute; 0: there are none. */
+/* Counts the values of an attribute. */
 static hssize_t count_values(hid_t attribute)
 {
     const hid_t space = H5Aget_space(attribute);

@@ -11,8 +11,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Directions that a chart is tried in, of which many charts have a fourth or an eighth; packings that look for the density, at most and if one is good. A chart below SMALL texels looks for room
- * little below where the last one of its class found some. */
+/* Each chart is tried in MAX_TURNS directions, from FEW_CHARTS on in a fourth of them, from SOME_CHARTS
+ * on in an eighth. The density is found by GOOD_TRIES packings, or up to MAX_TRIES until one fits;
+ * HALF_TRIES are for the square of half the size, from HALVED_FROM texels on. A chart below SMALL texels
+ * starts LOOK_BELOW rows below where the last one of its class of sizes found room. */
 enum {
     MAX_TURNS = 32,
     FEW_CHARTS = 64,
