@@ -18,6 +18,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 typedef struct check_args {
     cli_common common;
@@ -33,11 +34,11 @@ typedef struct check_args {
     bool deep, open, histogram;
 } check_args;
 
-static const char *const profiles[] = {"basic", "print", "web", "fem"};
+static const char *const profiles[] = {"basic", "print", "web", "fem", "game", "mobile"};
 
 static const cli_option options[] = {
-    {"profile", 'p', CLI_CHOICE, "basic/print/web/fem", "What the mesh must be fit for (basic)",
-     offsetof(check_args, profile)},
+    {"profile", 'p', CLI_CHOICE, "basic/print/web/fem/game/mobile",
+     "What the mesh must be fit for (basic)", offsetof(check_args, profile)},
     {"deep", 0, CLI_FLAG, NULL,
      "Look for self-intersections in every profile, and ask CGAL, too (off)",
      offsetof(check_args, deep)},
@@ -450,6 +451,13 @@ static cw_status measure_print(run_state *s, cw_error *err)
     return in_mesh(s, st, err);
 }
 
+/* Returns the bytes of a file; 0: it is none that can be told. */
+static size_t find_file_bytes(const char *path)
+{
+    struct stat info;
+    return stat(path, &info) == 0 && S_ISREG(info.st_mode) ? (size_t)info.st_size : 0;
+}
+
 /* Without triangles there is nothing to measure from or to: the verdict says so. */
 static cw_status measure_all(run_state *s, cw_error *err)
 {
@@ -467,6 +475,7 @@ static cw_status measure_all(run_state *s, cw_error *err)
     s->findings.tolerance_mm = tolerance_mm(s);
     s->findings.has_normals = mesh->normals;
     s->findings.file_fault = s->mesh.file.fault;
+    s->findings.file_bytes = find_file_bytes(s->mesh.path);
     cw_status st = measure_mesh(s, err);
     if (st == CW_OK && mesh->triangle_count)
         st = ask_cgal(s, err);
