@@ -204,14 +204,16 @@ static void remove_written(const cli_detail_levels *d, size_t count)
 
 cw_status cli_make_detail_levels(cli_detail_levels *d, cw_error *err)
 {
-    const size_t count = d->lod->count, files = d->files->count;
-    const bool together = files < count; /* levels have no file of their own */
+    const size_t files = d->files->count;
+    const bool together = files < d->lod->count; /* levels have no file of their own */
+    const char *all = files == d->lod->count ? NULL : d->files->path[files - 1];
     cw_status st = CW_OK;
-    for (size_t n = 0; n < (together ? count + 1 : files) && st == CW_OK; n++) {
-        const char *path = !together ? d->files->path[n] : n < count ? NULL : *d->files->path;
+    for (size_t n = 0; n < d->lod->count + (all ? 1 : 0) && st == CW_OK; n++) {
+        const bool is_level = n < d->lod->count;
+        const char *path = !is_level ? all : together ? NULL : d->files->path[n];
         cli_made *made = cli_report_next(d->report, path, 0);
-        made->name = n < count ? level_names[n] : "all";
-        st = n < count ? make_level(d, n, made, err) : deliver_together(d, path, err);
+        made->name = is_level ? level_names[n] : "all";
+        st = is_level ? make_level(d, n, made, err) : deliver_together(d, path, err);
         if (st != CW_OK) {
             made->error = *err;
             if (!made->written) /* else it is whole, but less exact than asked for */

@@ -8,7 +8,7 @@
 /* The levels of --lod on their way from a mesh to files, and the steps of the command that makes
  * them. Zero it, and set the first fields. Free it with cli_free_detail_levels(). */
 typedef struct cli_detail_levels {
-    const cli_counts *lod;
+    const cli_counts *lod;       /* those that `make` makes: it may leave some out */
     const char *name;            /* of the object inside the file of all; NULL: that file's */
     const cli_outputs *files;    /* as cli_name_detail_levels() names them */
     cli_report *report;          /* with room for a mesh more than levels */

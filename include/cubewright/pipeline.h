@@ -58,6 +58,7 @@ typedef enum cw_surface_source {
     CW_SOURCE_SLICES, /* slices that are read one after the other: the surface is never whole */
     CW_SOURCE_PARTS,  /* parts of a surface, by several processes, joined later */
     CW_SOURCE_LABELS, /* a label map: several surfaces that share their interfaces */
+    CW_SOURCE_MESH,   /* a mesh that is there: nothing is extracted */
     CW_SOURCE_COUNT
 } cw_surface_source;
 
@@ -211,6 +212,22 @@ CW_NODISCARD CW_API cw_status cw_pipeline_run_slices(const cw_slice_source *sour
                                                      const cw_pipeline_desc *desc,
                                                      cw_pipeline_sink sink,
                                                      cw_pipeline_facts *facts, cw_error *err);
+
+/* Runs the stages on a copy of a mesh, in place of the surface of a volume. Stages that need voxels are
+ * refused. A result without normals gets those of the triangles around its vertices, unless
+ * desc->extract.no_normals.
+ *
+ * mesh     borrowed
+ * desc     borrowed; of extract only no_normals, threads and progress count
+ * sink     takes the result
+ * facts    as in cw_pipeline_run(); extracted.triangles are those of the mesh
+ * Returns  CW_ERR_EMPTY  the mesh has no triangles; or as cw_pipeline_check(), as the functions of the
+ *                        stages, and as sink
+ * Threads  reentrant; the same to the bit for any number of threads */
+CW_NODISCARD CW_API cw_status cw_pipeline_run_mesh(const cw_mesh *mesh,
+                                                   const cw_pipeline_desc *desc,
+                                                   cw_pipeline_sink sink,
+                                                   cw_pipeline_facts *facts, cw_error *err);
 
 /* The interfaces of label maps, and the labels whose surfaces are to be finished. */
 typedef struct cw_pipeline_labels {

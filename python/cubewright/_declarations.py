@@ -369,7 +369,8 @@ class cw_surface_source(enum.IntEnum):
     CW_SOURCE_SLICES = 1
     CW_SOURCE_PARTS = 2
     CW_SOURCE_LABELS = 3
-    CW_SOURCE_COUNT = 4
+    CW_SOURCE_MESH = 4
+    CW_SOURCE_COUNT = 5
 
 
 class cw_slice_filter_kind(enum.IntEnum):
@@ -3827,6 +3828,7 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "cw_pipeline_run": (c_int, [POINTER(cw_volume), POINTER(cw_extractor), POINTER(cw_pipeline_desc), cw_pipeline_sink, POINTER(cw_pipeline_facts), POINTER(cw_error)]),
     "cw_pipeline_mesh": (c_int, [POINTER(cw_volume), POINTER(cw_extractor), POINTER(cw_pipeline_desc), POINTER(cw_mesh), POINTER(cw_pipeline_facts), POINTER(cw_error)]),
     "cw_pipeline_run_slices": (c_int, [POINTER(cw_slice_source), POINTER(cw_pipeline_desc), cw_pipeline_sink, POINTER(cw_pipeline_facts), POINTER(cw_error)]),
+    "cw_pipeline_run_mesh": (c_int, [POINTER(cw_mesh), POINTER(cw_pipeline_desc), cw_pipeline_sink, POINTER(cw_pipeline_facts), POINTER(cw_error)]),
     "cw_pipeline_run_labels": (c_int, [POINTER(cw_pipeline_labels), POINTER(cw_pipeline_desc), cw_pipeline_sink, POINTER(cw_pipeline_facts), POINTER(cw_error)]),
     "cw_mesh_remesh": (c_int, [POINTER(cw_mesh), POINTER(cw_remesh_desc), POINTER(cw_mesh), POINTER(cw_remesh_facts), POINTER(cw_error)]),
     "cw_repair_has_cgal": (c_bool, []),

@@ -339,6 +339,39 @@ static void levels_share_an_atlas_and_a_map(void **state)
     cw_volume_free(&volume);
 }
 
+/* The stages on a mesh are those on the volume that it came from, but for normals of the field. */
+static void a_mesh_runs_through_the_same_stages(void **state)
+{
+    (void)state;
+    cw_volume volume = make_noisy();
+    const cw_close_handles_desc handles = {.length_mm = 8};
+    const cw_simplify_desc simplify = {.triangles = 1500};
+    cw_pipeline_desc d = {.extract = {.isovalue = ISO},
+                          .largest = 2,
+                          .fill_voids = true,
+                          .close_handles = &handles,
+                          .simplify = cw_simplify_available() ? &simplify : NULL};
+    taken t = {0};
+    cw_mesh mesh, expected, empty = {0};
+    cw_pipeline_facts facts = {0};
+    cw_error err = {0};
+    assert_ok(cw_extract(&volume, &d.extract, &mesh, NULL, &err), err);
+    assert_ok(cw_pipeline_mesh(&volume, NULL, &d, &expected, NULL, &err), err);
+    assert_ok(
+        cw_pipeline_run_mesh(&mesh, &d, (cw_pipeline_sink){take_surface, &t}, &facts, &err),
+        err);
+    test_assert_same_mesh(&expected, &t.mesh);
+    assert_int_equal(facts.extracted.triangles, mesh.triangle_count);
+    cw_mesh_free(&t.mesh);
+    t = (taken){0};
+    assert_fails(
+        cw_pipeline_run_mesh(&empty, &d, (cw_pipeline_sink){take_surface, &t}, NULL, &err),
+        CW_ERR_EMPTY, "the mesh has no triangles", err);
+    cw_mesh_free(&mesh);
+    cw_mesh_free(&expected);
+    cw_volume_free(&volume);
+}
+
 static void maps_need_an_atlas_and_fewer_triangles(void **state)
 {
     (void)state;
@@ -482,6 +515,7 @@ static const struct excluded {
                            1u << CW_STAGE_LARGEST | 1u << CW_STAGE_FILL_VOIDS |
                            1u << CW_STAGE_HANDLES | 1u << CW_STAGE_SMOOTH | 1u << CW_STAGE_CUT |
                            1u << CW_STAGE_CULL | 1u << CW_STAGE_COLOR | TEXTURE},
+    {CW_SOURCE_MESH, 1u << CW_STAGE_VIEWS | 1u << CW_STAGE_CULL},
 };
 
 static void sources_exclude_what_they_cannot_give(void **state)
@@ -613,6 +647,7 @@ int main(void)
                                         test_folder_remove),
         cmocka_unit_test(levels_are_given_away_one_by_one),
         cmocka_unit_test(levels_share_an_atlas_and_a_map),
+        cmocka_unit_test(a_mesh_runs_through_the_same_stages),
         cmocka_unit_test(maps_need_an_atlas_and_fewer_triangles),
         cmocka_unit_test(stages_run_in_the_order_of_the_recipe),
         cmocka_unit_test(labels_are_simplified_together_and_given_away_apart),
