@@ -29,8 +29,7 @@ static const cli_asset *asset_of(const cli_mesh_run *r)
     return cli_find_asset(args_of(r)->profile - 1);
 }
 
-static const convert_args defaults = {
-    .mesh.compress.kind = -1, .placing.pivot = -1, .check = true};
+static const convert_args defaults = {.mesh.compress.kind = -1, .check = true};
 
 static const cli_option options[] = {
     CLI_MESH_OUTPUT(", with --split {name} and {part}"),
@@ -202,14 +201,13 @@ static const cli_mesh_command convert = {
 static void fill_profile(convert_args *args)
 {
     const cli_asset *asset = cli_find_asset(args->profile - 1);
-    int *compression = &args->mesh.compress.kind, *pivot = &args->placing.pivot;
+    int *compression = &args->mesh.compress.kind;
     if (*compression < 0)
         *compression = asset ? asset->compression : CW_COMPRESS_NONE;
-    if (*pivot < 0)
-        *pivot = asset ? CLI_PIVOT_BASE : CLI_PIVOT_FILE;
-    args->pivot = asset ? *pivot : CLI_PIVOT_FILE;
-    if (asset)
-        *pivot = CLI_PIVOT_FILE;
+    if (asset) {
+        args->pivot = args->placing.pivot;
+        args->placing.pivot = CLI_PIVOT_FILE;
+    }
 }
 
 static cw_status run_convert(void *args, cw_error *err)

@@ -22,7 +22,7 @@ enum { DEFAULT_FPS = 10 };
 
 static const cli_extract_args defaults = {.compress.kind = -1,
                                           .texture = CLI_TEXTURE_DEFAULTS,
-                                          .pivot = -1,
+
                                           .check = true,
                                           .measure = true};
 
@@ -222,7 +222,7 @@ static const cli_rule rules[] = {
     {"names smooth-labels table shared-faces per-label require-labels", CLI_NEEDS, "labels"},
     {"labels", CLI_EXCLUDES,
      "iso inside topology placement snap profile=print max-error pixel-error shading size no-measure fps "
-     "steps animate pvd prove-crop pivot=base pivot=centre component=mag resample denoise remove-table mask mask-open mask-close"},
+     "steps animate pvd prove-crop pivot component=mag resample denoise remove-table mask mask-open mask-close"},
     {"per-label", CLI_NEEDS, "simplify"},
     {"per-label", CLI_EXCLUDES, "shared-faces"},
     {"lod", CLI_EXCLUDES,

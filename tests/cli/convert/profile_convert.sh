@@ -17,7 +17,7 @@ ls *.glb
 cubewright convert parts.obj --profile game -o p.glb --json p.json -q && grep -c '"name": "lod[0-9]"' p.json
 cubewright convert a.stl --profile game --pivot centre --compress none -o c.glb --json c.json -q
 sed -n -e '/"profile"/p' -e '/"pivot"/p' -e '/"compression"/p' c.json
-cubewright convert game.glb -o g.obj -q && awk '$1 == "v" && (!n++ || $4 < low) { low = $4 } END { print "lowest", low + 0 }' g.obj
+cubewright convert a.stl --profile game --pivot base -o game.glb -q && cubewright convert game.glb -o g.obj -q && awk '$1 == "v" && (!n++ || $4 < low) { low = $4 } END { print "lowest", low + 0 }' g.obj
 
 # a mesh in other units: the same numbers, a thousand times smaller
 cubewright convert a.stl --scale 0.001 -o s.ply -q
