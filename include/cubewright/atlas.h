@@ -71,6 +71,30 @@ CW_API CW_NODISCARD cw_status cw_mesh_atlas(cw_mesh *mesh, const cw_atlas_desc *
  * Returns  CW_ERR_NO_MEMORY, or as cw_mesh_check() */
 CW_API CW_NODISCARD cw_status cw_mesh_split_seams(cw_mesh *mesh, cw_error *err);
 
+/* How far a texture has moved. */
+typedef struct cw_texture_distance {
+    size_t samples; /* points of the mesh that were compared */
+    double max_mm;  /* the largest distance of one */
+    double mean_mm; /* over the area of the mesh */
+    double
+        side_mm; /* what the texture's side measures on the full mesh, in the mean: a texture of n
+                       texels has n / side_mm for a mm */
+} cw_texture_distance;
+
+/* Measures how far the texture of a mesh has moved from where it was on another one, such as before it was
+ * simplified. A point of the mesh is as far from a point of the full mesh as the root of the sum of two
+ * squares says: that of the way in space, and that of the way in the texture, on the surface. The nearest
+ * point counts.
+ *
+ * mesh, full  with texture coordinates; borrowed
+ * threads     0: one per processor
+ * Returns     CW_ERR_ARGUMENT  no texture coordinates; those of the full mesh are not all finite
+ *             CW_ERR_EMPTY     these cover no area; CW_ERR_NO_MEMORY; or as cw_mesh_check()
+ * Source      points in space and texture as those of five dimensions [Garland1998] */
+CW_API CW_NODISCARD cw_status cw_mesh_texture_distance(const cw_mesh *mesh, const cw_mesh *full,
+                                                       int threads, cw_texture_distance *facts,
+                                                       cw_error *err);
+
 #ifdef __cplusplus
 }
 #endif

@@ -13,7 +13,7 @@ threads at once, as long as none writes to its arrays.
 """
 
 from ._about import Feature, Format, features, formats, make
-from ._atlas import Atlas, Baked, atlas, bake_normals
+from ._atlas import Atlas, Baked, TextureDistance, atlas, bake_normals, texture_distance
 from ._boolean import Combined, boolean
 from ._check import Check, Verdict, check, report
 from ._color import color_by
@@ -59,6 +59,7 @@ __all__ = [
     "Smoothed",
     "Statistics",
     "Status",
+    "TextureDistance",
     "Verdict",
     "Volume",
     "Written",
@@ -90,6 +91,7 @@ __all__ = [
     "simplify_levels",
     "smooth",
     "split",
+    "texture_distance",
     "transform",
     "weld",
     "write",

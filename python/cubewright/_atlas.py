@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _declarations as c
+from ._errors import call
 from ._library import lib
 from ._memory import Owner
 from ._mesh import Mesh, take_mesh
@@ -93,6 +94,33 @@ def atlas(
         stretch=facts.stretch,
         coverage=facts.coverage,
         flipped=facts.flipped,
+    )
+
+
+@dataclass(frozen=True)
+class TextureDistance:
+    """How far a texture moved on a surface, in mm."""
+
+    max_distance: float
+    mean_distance: float  # over the area of the mesh
+    side: float  # what the texture's side measures on the full mesh: n texels have n / side for a mm
+    samples: int
+
+
+def texture_distance(mesh: Mesh, full: Mesh, *, threads: int = 0) -> TextureDistance:
+    """Measures how far the texture of a mesh moved from where it was on another one, such as before simplify():
+    as distances of points in space and texture [Garland1998].
+
+    Raises Error: ARGUMENT without texture coordinates, EMPTY if those of the full mesh cover no area, NO_MEMORY.
+    """
+    low, fine = take_mesh("mesh", mesh), take_mesh("full", full)
+    facts = c.cw_texture_distance()
+    call(lib.cw_mesh_texture_distance, byref(low), byref(fine), take_threads(threads), byref(facts))
+    return TextureDistance(
+        max_distance=facts.max_mm,
+        mean_distance=facts.mean_mm,
+        side=facts.side_mm,
+        samples=facts.samples,
     )
 
 

@@ -728,6 +728,21 @@ cw_atlas_facts._fields_ = [
 ]
 
 
+class cw_texture_distance(Structure):
+    samples: int
+    max_mm: float
+    mean_mm: float
+    side_mm: float
+
+
+cw_texture_distance._fields_ = [
+    ("samples", c_size_t),
+    ("max_mm", c_double),
+    ("mean_mm", c_double),
+    ("side_mm", c_double),
+]
+
+
 class cw_picture(Structure):
     width: int
     height: int
@@ -3593,6 +3608,7 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "cw_mesh_drop_distant": (c_int, [POINTER(cw_mesh), POINTER(c_float), c_double, POINTER(cw_drop_counts), POINTER(c_double), POINTER(cw_error)]),
     "cw_mesh_atlas": (c_int, [POINTER(cw_mesh), POINTER(cw_atlas_desc), POINTER(cw_atlas_facts), POINTER(cw_error)]),
     "cw_mesh_split_seams": (c_int, [POINTER(cw_mesh), POINTER(cw_error)]),
+    "cw_mesh_texture_distance": (c_int, [POINTER(cw_mesh), POINTER(cw_mesh), c_int, POINTER(cw_texture_distance), POINTER(cw_error)]),
     "cw_picture_alloc": (c_int, [POINTER(cw_picture), c_size_t, c_size_t, POINTER(cw_error)]),
     "cw_picture_free": (None, [POINTER(cw_picture)]),
     "cw_image_alloc": (c_int, [POINTER(cw_image), c_size_t, c_size_t, POINTER(cw_error)]),
