@@ -39,7 +39,8 @@ static const cli_option options[] = {
     {"bake", 0, CLI_TEXT, "MESH",
      "Bake the surface of this mesh, which has more triangles, into maps of the output (none)",
      offsetof(cli_mesh_args, source), CLI_VALUES_MESH},
-    {"maps", 0, CLI_TEXT, "NAME[,NAME...]", "Maps that --bake makes: normals (normals)",
+    {"maps", 0, CLI_TEXT, "NAME[,NAME...]",
+     "Maps that --bake makes: normals, occlusion, curvature, thickness, colors (normals)",
      offsetof(uv_args, texture) + offsetof(cli_texture_args, maps)},
     {"reach", 0, CLI_LENGTH, "L",
      "How far the mesh of --bake may be (4% of the box's diagonal)",
@@ -52,7 +53,7 @@ static const cli_option options[] = {
 
 static const cli_rule rules[] = {
     {NULL, CLI_NEEDS, "output"},
-    {"maps reach", CLI_NEEDS, "bake"},
+    {"maps map-bits reach", CLI_NEEDS, "bake"},
     CLI_COMPRESS_RULES,
 };
 
@@ -212,11 +213,12 @@ static cw_status bake(cli_mesh_run *r, cw_error *err)
     if (st == CW_OK && !s->full.mesh.normals)
         st = cw_mesh_weld(&s->full.mesh, NULL, err);
     if (st == CW_OK)
-        st = cw_bake_normals(&all, &s->full.mesh, &desc, &images[CW_MAP_NORMALS], &s->baked,
-                             err);
+        st = cw_bake_maps(&all, &s->full.mesh, &desc, images, &s->baked, err);
+    if (st == CW_ERR_ARGUMENT && cli_find_maps(&args_of(r)->texture) >> CW_MAP_COLORS & 1)
+        r->blamed = s->full.path;
     if (st == CW_OK)
         st = cli_encode_maps(images, &s->maps, err);
-    r->pieces.textures = &s->maps.textures;
+    r->pieces.textures = cli_find_textures(&s->maps);
     for (int m = 0; m < CW_MAP_COUNT; m++)
         cw_image_free(&images[m]);
     cw_mesh_free(&all);
@@ -239,6 +241,13 @@ static cw_status lay_flat(cli_mesh_run *r, cw_error *err)
     return st == CW_OK && r->args->source ? bake(r, err) : st;
 }
 
+/* Writes the maps that the file has no place for. */
+static cw_status write_maps(cli_mesh_run *r, cw_error *err)
+{
+    return cli_write_maps(&((const uv_state *)r->state)->maps, r->outputs.path[0],
+                          r->args->written.no_clobber, err);
+}
+
 static const cli_mesh_command uv = {
     .name = "uv",
     .check = check_values,
@@ -246,6 +255,7 @@ static const cli_mesh_command uv = {
     .resolve = resolve_reach,
     .work = lay_flat,
     .report = report_facts,
+    .judge = write_maps,
     .put_params = put_params,
     .put_facts = put_facts,
 };

@@ -128,12 +128,15 @@ cw_status cli_extract_make_lod(cli_extract_run *s, cw_error *err)
                                 .report = &s->output.report,
                                 .pieces = &r.pieces,
                                 .is_budget = cli_extract_asset(s->args),
-                                .textures = &r.taken.maps.textures,
+                                .maps = &r.taken.maps,
                                 .make = make_levels,
                                 .finish = finish_level,
                                 .deliver = deliver_levels,
                                 .user = &r};
     cw_status st = cli_make_detail_levels(&levels, err);
+    if (st == CW_OK)
+        st = cli_write_maps(&r.taken.maps, s->output.files.path[s->output.files.count - 1],
+                            s->args->no_clobber, err);
     cli_free_detail_levels(&levels);
     cli_free_pieces(&r.pieces);
     cli_free_taken(&r.taken);

@@ -147,6 +147,11 @@ static void find_switch(cli_made *made)
         made->switch_m = cli_find_switch_m(cw_mesh_comparison_max(&made->compared.with_input));
 }
 
+static const cw_textures *find_textures(const cli_detail_levels *d)
+{
+    return d->maps ? cli_find_textures(d->maps) : NULL;
+}
+
 static cw_status make_level(cli_detail_levels *d, size_t n, cli_made *made, cw_error *err)
 {
     cw_mesh *level = &d->mesh[n];
@@ -157,14 +162,19 @@ static cw_status make_level(cli_detail_levels *d, size_t n, cli_made *made, cw_e
         st = check_levels(d, err);
     if (st != CW_OK)
         return st;
-    cli_report_missed(d->report, d->pieces, d->lod->n[n], level->triangle_count,
-                      d->keeps_border);
+    if (d->is_budget && level->triangle_count > d->lod->n[n])
+        cli_say("%s: %s has %s triangles in place of %s: its topology and its seams need them",
+                d->pieces->path, level_names[n], cli_count(level->triangle_count),
+                cli_count(d->lod->n[n]));
+    else
+        cli_report_missed(d->report, d->pieces, d->lod->n[n], level->triangle_count,
+                          d->keeps_border);
     st = d->finish(d->user, made, level, err);
     find_switch(made);
     if (st == CW_OK)
         st = order_for_drawing(d, level, err);
     const cw_part part = {
-        .mesh = level, .name = d->pieces->piece->name, .textures = d->textures};
+        .mesh = level, .name = d->pieces->piece->name, .textures = find_textures(d)};
     return st == CW_OK ? d->deliver(d->user, n, &part, 1, err) : st;
 }
 
@@ -184,7 +194,7 @@ static cw_status deliver_together(cli_detail_levels *d, const char *path, cw_err
             .level = n,
             .max_error_mm = cw_mesh_comparison_max(c),
             .rms_error_mm = cw_mesh_comparison_rms(c),
-            .textures = d->textures,
+            .textures = find_textures(d),
         };
     }
     cw_status st = d->deliver(d->user, d->lod->count, parts, d->lod->count, err);

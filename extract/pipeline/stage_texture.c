@@ -1,4 +1,5 @@
 /* The stages of textures: coordinates, which levels of detail share, and the maps that are baked. */
+#include "core/base/memory.h"
 #include "core/base/status.h"
 #include "core/mesh/mesh.h"
 #include "extract/pipeline/stages.h"
@@ -27,19 +28,34 @@ cw_status cwi_lay_flat(cwi_pipeline *p, cw_mesh *mesh, cw_error *err)
     return p->levels ? make_lower_levels(p, err) : CW_OK;
 }
 
+/* Colours the full surface as its levels are. Theirs go, since viewers would multiply both. */
+static cw_status move_colors(cwi_pipeline *p, cw_mesh *mesh, cw_mesh *full, cw_error *err)
+{
+    const unsigned maps = p->desc->bake->maps;
+    cw_status st = CW_OK;
+    if (!(maps >> CW_MAP_COLORS & 1))
+        return CW_OK;
+    if (p->desc->color && !p->facts.baked.texels)
+        st = cwi_color_surface(p, full, err);
+    cwi_free(mesh->colors);
+    mesh->colors = NULL;
+    return st;
+}
+
 cw_status cwi_bake_maps(cwi_pipeline *p, cw_mesh *mesh, cw_error *err)
 {
     const cw_pipeline_desc *d = p->desc;
+    cw_mesh *full = p->levels ? &p->mesh : &p->full;
     cw_bake_desc desc = *d->bake;
-    if (p->maps[CW_MAP_NORMALS].pixels) /* level 0's */
-        return CW_OK;
+    cw_status st = move_colors(p, mesh, full, err);
+    if (st != CW_OK || p->facts.baked.texels) /* those of level 0 are there */
+        return st;
     desc.size = p->facts.atlas.size;
     desc.margin = p->facts.atlas.margin;
     desc.threads = d->extract.threads;
     desc.progress = cwi_begin_stage(p, CW_STAGE_MAPS, (size_t)desc.size * desc.size, "texel");
-    cw_status st = mesh->normals ? CW_OK : cw_mesh_normals(mesh, err);
+    st = mesh->normals ? CW_OK : cw_mesh_normals(mesh, err);
     if (st == CW_OK)
-        st = cw_bake_normals(mesh, p->levels ? &p->mesh : &p->full, &desc,
-                             &p->maps[CW_MAP_NORMALS], &p->facts.baked, err);
+        st = cw_bake_maps(mesh, full, &desc, p->maps, &p->facts.baked, err);
     return st == CW_OK ? CW_OK : cwi_fail_in(err, st, "maps");
 }

@@ -53,6 +53,7 @@ CW_FEM_MAX_ASPECT = 10.0
 CW_FEM_MIN_ANGLE_DEG = 10.0
 CW_HANDLE_FRACTION = 0.03
 CW_NEEDLE_RATIO = 20.0
+CW_OCCLUSION_DIVISOR = 4
 CW_PRINT_MAX_MM = 400.0
 CW_PRINT_MIN_MM = 5.0
 CW_SIMPLIFIER_SLAB = 524288
@@ -124,7 +125,11 @@ class cw_interpolation(enum.IntEnum):
 
 class cw_map(enum.IntEnum):
     CW_MAP_NORMALS = 0
-    CW_MAP_COUNT = 1
+    CW_MAP_OCCLUSION = 1
+    CW_MAP_CURVATURE = 2
+    CW_MAP_THICKNESS = 3
+    CW_MAP_COLORS = 4
+    CW_MAP_COUNT = 5
 
 
 class cw_boolean_op(enum.IntEnum):
@@ -760,12 +765,14 @@ class cw_image(Structure):
     width: int
     height: int
     pixels: Any
+    deep: Any
 
 
 cw_image._fields_ = [
     ("width", c_size_t),
     ("height", c_size_t),
     ("pixels", POINTER(c_uint8)),
+    ("deep", POINTER(c_uint16)),
 ]
 
 
@@ -800,6 +807,10 @@ class cw_bake_desc(Structure):
     threads: int
     progress: Any
     maps: int
+    occlusion_mm: float
+    thickness_mm: float
+    curvature_max: float
+    deep: bool
 
 
 cw_bake_desc._fields_ = [
@@ -810,6 +821,10 @@ cw_bake_desc._fields_ = [
     ("threads", c_int),
     ("progress", cw_progress),
     ("maps", c_uint),
+    ("occlusion_mm", c_double),
+    ("thickness_mm", c_double),
+    ("curvature_max", c_double),
+    ("deep", c_bool),
 ]
 
 
@@ -820,6 +835,9 @@ class cw_bake_facts(Structure):
     mean_mm: float
     mean_deg: float
     reach_mm: float
+    occlusion_mm: float
+    thickness_mm: float
+    curvature_max: float
 
 
 cw_bake_facts._fields_ = [
@@ -829,6 +847,9 @@ cw_bake_facts._fields_ = [
     ("mean_mm", c_double),
     ("mean_deg", c_double),
     ("reach_mm", c_double),
+    ("occlusion_mm", c_double),
+    ("thickness_mm", c_double),
+    ("curvature_max", c_double),
 ]
 
 
@@ -3623,6 +3644,7 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "cw_bytes_free": (None, [POINTER(c_uint8)]),
     "cw_map_name": (c_char_p, [c_int]),
     "cw_bake_normals": (c_int, [POINTER(cw_mesh), POINTER(cw_mesh), POINTER(cw_bake_desc), POINTER(cw_image), POINTER(cw_bake_facts), POINTER(cw_error)]),
+    "cw_bake_maps": (c_int, [POINTER(cw_mesh), POINTER(cw_mesh), POINTER(cw_bake_desc), POINTER(cw_image), POINTER(cw_bake_facts), POINTER(cw_error)]),
     "cw_mesh_boolean": (c_int, [POINTER(POINTER(cw_mesh)), c_size_t, POINTER(cw_boolean_desc), POINTER(cw_mesh), POINTER(cw_boolean_facts), POINTER(cw_error)]),
     "cw_view_name": (c_char_p, [c_size_t]),
     "cw_camera_fit": (c_int, [POINTER(cw_fit_desc), POINTER(cw_camera), POINTER(cw_error)]),

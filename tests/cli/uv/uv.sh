@@ -46,6 +46,11 @@ for t in 1 4; do cubewright uv t.ply --bake full.ply --atlas 256 -o n$t.glb --na
 cmp n1.glb n4.glb && echo "same"
 cubewright uv t.ply --bake full.ply -o n.obj
 echo $?
+cubewright uv t.ply --bake full.ply --maps curvature,thickness --map-bits 16 --atlas 256 -o m.obj | grep -o "maps of full.ply"
+ls m-*.png
+cubewright uv t.ply --bake full.ply --maps curvature --atlas 256 --no-clobber -o m2.obj -q && ls m2*
+cubewright uv t.ply --bake full.ply --maps colors -o n.glb -q
+echo $?
 cubewright uv t.ply --reach 1mm -o n.glb
 echo $?
 cubewright uv t.ply --bake nothing.ply -o n.glb
