@@ -93,6 +93,8 @@ tinygltf::Value draco_extension(tinygltf::Model &model, const cwi_gltf_piece &pi
         ids["COLOR_0"] = tinygltf::Value(piece.ids.color);
     if (piece.ids.texture >= 0)
         ids["TEXCOORD_0"] = tinygltf::Value(piece.ids.texture);
+    if (piece.ids.tangent >= 0)
+        ids["TANGENT"] = tinygltf::Value(piece.ids.tangent);
     return tinygltf::Value(Object{{"bufferView", whole(model.bufferViews.size() - 1)},
                                   {"attributes", tinygltf::Value(ids)}});
 }

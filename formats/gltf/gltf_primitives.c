@@ -135,7 +135,7 @@ static cw_status unpack_primitive(cwi_gltf_reader *r, const cwi_gltf_primitive *
                                   cw_error *err)
 {
     const cwi_gltf_scene *scene = &r->scene;
-    const cwi_draco_ids ids = {p->draco_position, p->draco_normal, p->draco_color, -1};
+    const cwi_draco_ids ids = {p->draco_position, p->draco_normal, p->draco_color, -1, -1};
     const uint64_t points = count_of(scene, p->position), indices = count_of(scene, p->indices);
     unsigned char *packed = NULL;
     r->bytes.unpacked = NULL;
