@@ -234,7 +234,7 @@ static const cli_rule rules[] = {
     {"shading", CLI_NEEDS, "pixel-error"},
     {"snap", CLI_EXCLUDES, "simplify max-error pixel-error cull"},
     {"max-move", CLI_NEEDS, "smooth"},
-    {"no-measure", CLI_NEEDS, "simplify lod smooth"},
+    {"no-measure", CLI_NEEDS, "simplify lod smooth profile=game profile=web profile=mobile"},
     {"profile=print", CLI_EXCLUDES, "open cull lod animate no-check"},
     {"fps", CLI_NEEDS, "animate"},
     {"pvd", CLI_EXCLUDES, "animate"},

@@ -62,6 +62,20 @@ typedef struct cw_atlas_facts {
 CW_API CW_NODISCARD cw_status cw_mesh_atlas(cw_mesh *mesh, const cw_atlas_desc *desc,
                                             cw_atlas_facts *facts, cw_error *err);
 
+/* Gives several meshes texture coordinates in one square: parts of a file, or levels of detail, which then share
+ * their textures.
+ *
+ * meshes  count of them; on failure some may have texture coordinates that are not final
+ * scales  count of them: texels of a mesh for its mm, as a share of those of the first, such as 1, 0.5, 0.25 for
+ *         levels of detail; NULL: all the same
+ * desc    borrowed; NULL means all defaults
+ * facts   of all together; texels_per_mm is that of a scale of 1; may be NULL
+ *
+ * Returns as cw_mesh_atlas(); CW_ERR_ARGUMENT for a count of 0, and a scale that is not positive */
+CW_API CW_NODISCARD cw_status cw_meshes_atlas(cw_mesh *const *meshes, const double *scales,
+                                              size_t count, const cw_atlas_desc *desc,
+                                              cw_atlas_facts *facts, cw_error *err);
+
 /* Splits vertices whose corners have different texture coordinates, so that each vertex has one, for
  * programs that know values of vertices alone. The attribute CW_TEXTURE_COORDINATES then has
  * CW_ON_VERTICES. A mesh without it stays as it is.

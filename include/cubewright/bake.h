@@ -108,6 +108,14 @@ CW_API CW_NODISCARD cw_status cw_bake_maps(const cw_mesh *mesh, const cw_mesh *f
                                            const cw_bake_desc *desc, cw_image *images,
                                            cw_bake_facts *facts, cw_error *err);
 
+/* Bakes the same maps for several meshes that share a square, of cw_meshes_atlas(): parts, or levels of detail.
+ * meshes  count of them; borrowed
+ * Returns as cw_bake_maps() */
+CW_API CW_NODISCARD cw_status cw_bake_meshes(const cw_mesh *const *meshes, size_t count,
+                                             const cw_mesh *full, const cw_bake_desc *desc,
+                                             cw_image *images, cw_bake_facts *facts,
+                                             cw_error *err);
+
 #ifdef __cplusplus
 }
 #endif

@@ -6,6 +6,7 @@
 #include "core/geometry/closest_point.h"
 #include "core/geometry/vec3.h"
 #include "core/mesh/mesh.h"
+#include "core/texture/gather_meshes.h"
 #include "core/texture/split_seams.h"
 #include "core/texture/tangents.h"
 #include "simplify/bake/bake_state.h"
@@ -314,6 +315,39 @@ cw_status cw_bake_maps(const cw_mesh *mesh, const cw_mesh *full, const cw_bake_d
     cwi_boxes_free(&b.tree);
     cwi_free(b.tangents);
     cwi_free(b.curvature);
+    return st;
+}
+
+/* Fails if a mesh lacks what all need. */
+static cw_status check_meshes(const cw_mesh *const *meshes, size_t count, cw_error *err)
+{
+    cw_status st =
+        count ? CW_OK : cwi_fail(err, CW_ERR_ARGUMENT, "count is 0: expected meshes");
+    for (size_t n = 0; n < count && st == CW_OK; n++) {
+        st = cw_mesh_check(meshes[n], err);
+        if (st == CW_OK && !cwi_texture_of(meshes[n]))
+            st = cwi_fail(err, CW_ERR_ARGUMENT, "the mesh has no texture coordinates");
+        if (st == CW_OK && !meshes[n]->normals)
+            st = cwi_fail(err, CW_ERR_ARGUMENT, "the mesh has no normals");
+    }
+    return st;
+}
+
+cw_status cw_bake_meshes(const cw_mesh *const *meshes, size_t count, const cw_mesh *full,
+                         const cw_bake_desc *desc, cw_image *images, cw_bake_facts *facts,
+                         cw_error *err)
+{
+    CWI_REQUIRE(err, meshes, full, images);
+    cw_mesh all = {0};
+    memset(images, 0, CW_MAP_COUNT * sizeof *images);
+    cw_status st = check_meshes(meshes, count, err);
+    if (st == CW_OK && count == 1)
+        return cw_bake_maps(meshes[0], full, desc, images, facts, err);
+    if (st == CW_OK)
+        st = cwi_gather_meshes(meshes, NULL, count, true, true, &all, err);
+    if (st == CW_OK)
+        st = cw_bake_maps(&all, full, desc, images, facts, err);
+    cw_mesh_free(&all);
     return st;
 }
 

@@ -289,7 +289,7 @@ static cw_status take_maps(void *user, cw_pipeline_surface *surface,
     return CW_OK;
 }
 
-/* One atlas and one map, made as by hand of level 0, and of the surface before it was simplified. */
+/* One square and one map for all levels, made as by hand, of the surface before it was simplified. */
 static void levels_share_an_atlas_and_a_map(void **state)
 {
     (void)state;
@@ -319,23 +319,27 @@ static void levels_share_an_atlas_and_a_map(void **state)
     full_desc.lod_count = 0;
     full_desc.atlas = NULL;
     full_desc.bake = NULL;
-    cw_mesh full = make_by_hand(&volume, &full_desc), low = {0};
-    cw_image map = {0};
+    cw_mesh full = make_by_hand(&volume, &full_desc), low[2] = {{0}};
+    cw_mesh *const list[2] = {&low[0], &low[1]};
+    cw_image maps[CW_MAP_COUNT];
     const cw_bake_desc same = {.size = 256, .margin = facts.atlas.margin, .reach_mm = 10};
-    assert_ok(cw_simplify_levels(&full, &(cw_simplify_desc){0}, counts, 1, &low, NULL, &err),
+    assert_ok(cw_simplify_levels(&full, &(cw_simplify_desc){0}, counts, 2, low, NULL, &err),
               err);
-    assert_ok(cw_mesh_atlas(&low, &atlas, NULL, &err), err);
-    assert_ok(cw_bake_normals(&low, &full, &same, &map, NULL, &err), err);
-    test_assert_same_mesh(&low, &t.mesh[0]);
-    assert_memory_equal(map.pixels, t.map.pixels, 4 * 256 * 256);
+    assert_ok(cw_meshes_atlas(list, (double[]){1, 0.5}, 2, &atlas, NULL, &err), err);
+    assert_ok(cw_bake_meshes((const cw_mesh *const *)list, 2, &full, &same, maps, NULL, &err),
+              err);
+    assert_memory_equal(maps[CW_MAP_NORMALS].pixels, t.map.pixels, 4 * 256 * 256);
     for (size_t n = 0; n < 2; n++) {
-        assert_non_null(cw_mesh_attribute_find(&t.mesh[n], CW_TEXTURE_COORDINATES));
+        test_assert_same_mesh(&low[n], &t.mesh[n]);
+        assert_memory_equal(cw_mesh_attribute_find(&low[n], CW_TEXTURE_COORDINATES)->data,
+                            cw_mesh_attribute_find(&t.mesh[n], CW_TEXTURE_COORDINATES)->data,
+                            low[n].triangle_count * 6 * sizeof(float));
+        cw_mesh_free(&low[n]);
         cw_mesh_free(&t.mesh[n]);
     }
     cw_image_free(&t.map);
-    cw_image_free(&map);
+    cw_image_free(&maps[CW_MAP_NORMALS]);
     cw_mesh_free(&full);
-    cw_mesh_free(&low);
     cw_volume_free(&volume);
 }
 

@@ -4,6 +4,8 @@
 
 #include <cubewright/atlas.h>
 
+#include "core/texture/gather_meshes.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -295,6 +297,44 @@ static void it_can_be_cancelled(void **state)
     }
 }
 
+/* Returns the area of a mesh's triangles in the texture. */
+static double sum_texture(const cw_mesh *mesh)
+{
+    const float(*uv)[2] = test_coordinates(mesh);
+    double sum = 0;
+    for (size_t t = 0; t < mesh->triangle_count; t++)
+        sum += test_texture_area(uv + 3 * t);
+    return sum;
+}
+
+static void meshes_share_a_square(void **state)
+{
+    (void)state;
+    const double scales[2] = {1, 0.5}, wrong[2] = {1, 0};
+    cw_mesh a = test_extract_field(CW_FIELD_TORUS, 24),
+            b = test_extract_field(CW_FIELD_TORUS, 24), all = {0};
+    cw_mesh *const list[2] = {&a, &b};
+    cw_atlas_facts facts;
+    cw_error err = {0};
+    assert_fails(cw_meshes_atlas(list, wrong, 2, NULL, NULL, &err), CW_ERR_ARGUMENT,
+                 "scales[1] is 0", err);
+    assert_fails(cw_meshes_atlas(list, NULL, 0, NULL, NULL, &err), CW_ERR_ARGUMENT,
+                 "count is 0", err);
+    assert_ok(cw_meshes_atlas(list, scales, 2, &(cw_atlas_desc){.size = 512}, &facts, &err),
+              err);
+    const double large = sum_texture(&a), small = sum_texture(&b);
+    assert_near(small, large / 4, 0.01 * large);
+    const cw_quality q = test_measure(&a);
+    assert_near(large, q.area_mm2 * pow(facts.texels_per_mm / 512, 2), 0.01 * large);
+    const cw_mesh *const both[2] = {&a, &b};
+    assert_ok(cwi_gather_meshes(both, NULL, 2, false, true, &all, &err), err);
+    size_t covered;
+    assert_int_equal(test_count_overlaps(&all, &covered), 0);
+    cw_mesh_free(&all);
+    cw_mesh_free(&a);
+    cw_mesh_free(&b);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -309,6 +349,7 @@ int main(void)
         cmocka_unit_test(wrong_settings_are_named),
         cmocka_unit_test(seams_split_vertices),
         cmocka_unit_test(it_can_be_cancelled),
+        cmocka_unit_test(meshes_share_a_square),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
