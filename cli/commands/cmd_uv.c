@@ -162,7 +162,8 @@ static cw_status check_values(cli_mesh_run *r, cw_error *err)
     const cw_format *format = cw_mesh_format(args->mesh.output, args->mesh.written.format);
     if (args->mesh.source && format && !(format->keeps & CW_KEEPS_PICTURES))
         return cwi_fail(err, CW_ERR_ARGUMENT,
-                        "%s holds no normal map; --bake is for .glb and .gltf", format->name);
+                        "%s holds no pictures; --bake is for .glb, .gltf and .obj",
+                        format->name);
     if (args->density.given && !(args->density.value > 0))
         return cwi_fail(err, CW_ERR_ARGUMENT, "--texel-density %g: expected more than 0",
                         args->density.value);
@@ -288,7 +289,15 @@ static cw_status lay_flat(cli_mesh_run *r, cw_error *err)
         .texels_per_mm = args->density.given ? args->density.value : 0,
         .threads = r->threads,
         .progress = cli_progress((double)r->pieces.triangles / 1e6, "Mtriangle")};
+    bool had_pictures = false;
+    for (size_t n = 0; n < r->pieces.count; n++) {
+        had_pictures = had_pictures || r->pieces.piece[n].textures;
+        r->pieces.piece[n].textures = NULL;
+    }
     cw_status st = join_pieces(&r->pieces, &all, err);
+    if (st == CW_OK && had_pictures)
+        cli_say("%s: pictures lost: they lie by the texture coordinates that it had",
+                r->mesh.path);
     if (st == CW_OK)
         st = cw_mesh_atlas(&all, &desc, &s->facts, err);
     if (st == CW_OK)

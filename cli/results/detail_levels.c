@@ -134,7 +134,8 @@ static cw_status make_level(cli_detail_levels *d, size_t n, cli_made *made, cw_e
     st = d->finish(d->user, made, level, err);
     if (st == CW_OK)
         st = order_for_drawing(d, level, err);
-    const cw_part part = {.mesh = level, .name = d->pieces->piece->name};
+    const cw_part part = {
+        .mesh = level, .name = d->pieces->piece->name, .textures = d->pieces->piece->textures};
     return st == CW_OK ? d->deliver(d->user, n, &part, 1, err) : st;
 }
 
@@ -152,6 +153,7 @@ static cw_status deliver_together(cli_detail_levels *d, const char *path, cw_err
             .mesh = &d->mesh[n],
             .name = names[n],
             .level = n,
+            .textures = d->pieces->piece->textures,
             .max_error_mm = cw_mesh_comparison_max(c),
             .rms_error_mm = cw_mesh_comparison_rms(c),
         };
