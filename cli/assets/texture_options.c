@@ -57,6 +57,10 @@ static cw_texture *find_texture(cw_textures *textures, int map)
     switch (map) {
     case CW_MAP_NORMALS:
         return &textures->normal;
+    case CW_MAP_OCCLUSION:
+        return &textures->occlusion;
+    case CW_MAP_COLORS:
+        return &textures->color;
     default:
         return NULL;
     }
@@ -88,7 +92,7 @@ static cw_status check_maps(const cli_texture_args *args, const char *output,
                         args->maps, (int)strcspn(bad, ","), bad, names);
     if (find_held(maps) && f && !(f->keeps & CW_KEEPS_PICTURES))
         return cwi_fail(err, CW_ERR_ARGUMENT,
-                        "%s holds no maps; .glb and .gltf do, and --maps none makes none",
+                        "%s holds no maps; .glb, .gltf and .obj do, and --maps none makes none",
                         f->name);
     return CW_OK;
 }

@@ -182,7 +182,8 @@ static cw_status convert_mesh(cli_mesh_run *r, cw_error *err)
         return convert_solids(r, m->parts ? m->parts[0].mesh : &m->mesh,
                               m->parts ? m->parts[0].label : NULL, err);
     return m->parts ? convert_file(r, 0, m->parts, m->part_count, err)
-                    : convert_file(r, 0, &(cw_part){.mesh = &m->mesh}, 1, err);
+                    : convert_file(r, 0, &(cw_part){.mesh = &m->mesh, .textures = m->textures},
+                                   1, err);
 }
 
 static const cli_mesh_command convert = {

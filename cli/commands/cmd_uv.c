@@ -182,6 +182,19 @@ static cw_status bake(cli_mesh_run *r, cw_mesh *const *list, cw_error *err)
     return st;
 }
 
+/* Forgets the pictures that the mesh came with, and says so. */
+static void drop_pictures(cli_mesh_run *r)
+{
+    bool had_pictures = false;
+    for (size_t n = 0; n < r->pieces.count; n++) {
+        had_pictures = had_pictures || r->pieces.piece[n].textures;
+        r->pieces.piece[n].textures = NULL;
+    }
+    if (had_pictures)
+        cli_say("%s: pictures lost: they lie by the texture coordinates that it had",
+                r->mesh.path);
+}
+
 static cw_status lay_flat(cli_mesh_run *r, cw_error *err)
 {
     uv_state *s = r->state;
@@ -189,6 +202,7 @@ static cw_status lay_flat(cli_mesh_run *r, cw_error *err)
     cw_atlas_desc desc = cli_atlas_desc(&args_of(r)->texture);
     desc.threads = r->threads;
     desc.progress = cli_progress((double)r->pieces.triangles / 1e6, "Mtriangle");
+    drop_pictures(r);
     cw_status st = copy_pieces(&r->pieces, &list, err);
     if (st == CW_OK)
         st = cw_meshes_atlas(list, NULL, r->pieces.count, &desc, &s->facts, err);

@@ -6,6 +6,7 @@
 #include "cli/framework/quantity.h"
 #include "core/base/status.h"
 
+#include <cubewright/atlas.h>
 #include <cubewright/quality.h>
 
 #include <sha2.h>
@@ -115,6 +116,30 @@ static double file_bytes(const char *path)
     return stat(path, &info) == 0 ? (double)info.st_size : 0;
 }
 
+bool cli_is_textured(const cli_mesh *m)
+{
+    bool found = cw_mesh_attribute_find(&m->mesh, CW_TEXTURE_COORDINATES);
+    for (size_t p = 0; p < m->part_count; p++)
+        found = found || cw_mesh_attribute_find(m->parts[p].mesh, CW_TEXTURE_COORDINATES);
+    return found;
+}
+
+/* Reads the pictures of a textured mesh that is merged: one mesh has one set of them. */
+static cw_status read_pictures(const char *path, const cw_mesh_read_desc *desc, cli_mesh *m,
+                               cw_error *err)
+{
+    bool differ = false;
+    cw_status st = cw_parts_read(path, desc, &m->pictured, &m->pictured_count, NULL, err);
+    for (size_t p = 1; st == CW_OK && p < m->pictured_count; p++)
+        differ = differ || m->pictured[p].textures != m->pictured->textures;
+    if (st == CW_OK && differ)
+        cli_say("%s: pictures left out: %zu parts have several, and are taken as one mesh",
+                path, m->pictured_count);
+    else if (st == CW_OK && m->pictured_count)
+        m->textures = m->pictured->textures;
+    return st;
+}
+
 static cw_status read_file(const char *path, const char *reader, const cli_input *input,
                            bool parts, bool reference, cli_mesh *mesh, cw_error *err)
 {
@@ -137,6 +162,8 @@ static cw_status read_file(const char *path, const char *reader, const cli_input
               : cw_mesh_read(path, &desc, &mesh->mesh, &mesh->file, err);
     if (st == CW_OK)
         say_what_was_found(mesh);
+    if (st == CW_OK && !parts && !reference && cli_is_textured(mesh))
+        st = read_pictures(path, &desc, mesh, err);
     return st;
 }
 
@@ -178,6 +205,9 @@ void cli_free_mesh(cli_mesh *mesh)
 {
     cw_mesh_free(&mesh->mesh);
     cw_parts_free(mesh->parts, mesh->part_count);
+    cw_parts_free(mesh->pictured, mesh->pictured_count);
+    mesh->pictured = NULL;
+    mesh->pictured_count = 0;
     mesh->parts = NULL;
     mesh->part_count = 0;
 }

@@ -149,7 +149,7 @@ static void find_switch(cli_made *made)
 
 static const cw_textures *find_textures(const cli_detail_levels *d)
 {
-    return d->maps ? cli_find_textures(d->maps) : NULL;
+    return d->maps ? cli_find_textures(d->maps) : d->pieces->piece->textures;
 }
 
 static cw_status make_level(cli_detail_levels *d, size_t n, cli_made *made, cw_error *err)

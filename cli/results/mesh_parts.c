@@ -55,7 +55,8 @@ static cw_status take_parts(cli_pieces *p, const cli_mesh *m, bool weld, cw_erro
         cli_piece *piece = &p->piece[p->count];
         *piece = (cli_piece){.input = m->parts ? *m->parts[n].mesh : m->mesh,
                              .name = m->parts ? m->parts[n].name : NULL,
-                             .label = m->parts ? m->parts[n].label : NULL};
+                             .label = m->parts ? m->parts[n].label : NULL,
+                             .textures = m->parts ? m->parts[n].textures : m->textures};
         if (weld)
             st = cw_mesh_weld(&piece->input, &merged, err);
         p->merged += merged;
@@ -265,7 +266,7 @@ cw_status cli_list_parts(const cli_pieces *p, cw_part **parts, cw_error *err)
         (*parts)[n] = (cw_part){.mesh = &p->piece[n].out,
                                 .name = p->piece[n].name,
                                 .label = p->piece[n].label,
-                                .textures = p->textures};
+                                .textures = p->textures ? p->textures : p->piece[n].textures};
     return CW_OK;
 }
 

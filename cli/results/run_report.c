@@ -22,12 +22,19 @@
 #include <sys/stat.h>
 
 const struct cli_kept cli_kept[] = {
-    {CW_KEEPS_PARTS, "parts"},         {CW_KEEPS_SHARING, "shared vertices"},
-    {CW_KEEPS_NORMALS, "normals"},     {CW_KEEPS_COLORS, "colours"},
-    {CW_KEEPS_SCALARS, "scalars"},     {CW_KEEPS_LABELS, "labels"},
-    {CW_KEEPS_AFFINE, "affine"},       {CW_KEEPS_FACE_COLORS, "face colours"},
-    {CW_KEEPS_OPACITY, "opacity"},     {CW_KEEPS_TEXTURE, "texture coordinates"},
-    {CW_KEEPS_PICTURES, "normal map"}, {CW_KEEPS_ATTRIBUTES, "attributes"},
+    {CW_KEEPS_PARTS, "parts"},
+    {CW_KEEPS_SHARING, "shared vertices"},
+    {CW_KEEPS_NORMALS, "normals"},
+    {CW_KEEPS_COLORS, "colours"},
+    {CW_KEEPS_SCALARS, "scalars"},
+    {CW_KEEPS_LABELS, "labels"},
+    {CW_KEEPS_AFFINE, "affine"},
+    {CW_KEEPS_FACE_COLORS, "face colours"},
+    {CW_KEEPS_OPACITY, "opacity"},
+    {CW_KEEPS_TEXTURE, "texture coordinates"},
+    {CW_KEEPS_PICTURES, "pictures"},
+    {CW_KEEPS_MATERIALS, "metallic-roughness and occlusion pictures"},
+    {CW_KEEPS_ATTRIBUTES, "attributes"},
 };
 const size_t cli_kept_count = sizeof cli_kept / sizeof *cli_kept;
 

@@ -265,7 +265,8 @@ class cw_keeps(enum.IntEnum):
     CW_KEEPS_OPACITY = 1024
     CW_KEEPS_TEXTURE = 2048
     CW_KEEPS_PICTURES = 4096
-    CW_KEEPS_ALL = 8191
+    CW_KEEPS_MATERIALS = 8192
+    CW_KEEPS_ALL = 16383
 
 
 class cw_mode(enum.IntEnum):
@@ -2104,11 +2105,35 @@ cw_texture._fields_ = [
 class cw_textures(Structure):
     version: int
     normal: Any
+    color: Any
+    metallic_roughness: Any
+    occlusion: Any
+    emissive: Any
+    has_factors: bool
+    color_factor: Any
+    metallic_factor: float
+    roughness_factor: float
+    emissive_factor: Any
+    normal_scale: float
+    occlusion_strength: float
+    repeats: bool
 
 
 cw_textures._fields_ = [
     ("version", c_uint32),
     ("normal", cw_texture),
+    ("color", cw_texture),
+    ("metallic_roughness", cw_texture),
+    ("occlusion", cw_texture),
+    ("emissive", cw_texture),
+    ("has_factors", c_bool),
+    ("color_factor", c_float * 4),
+    ("metallic_factor", c_float),
+    ("roughness_factor", c_float),
+    ("emissive_factor", c_float * 3),
+    ("normal_scale", c_float),
+    ("occlusion_strength", c_float),
+    ("repeats", c_bool),
 ]
 
 

@@ -45,6 +45,7 @@ cw_status cw_meshes_atlas(cw_mesh *const *meshes, const double *scales, size_t c
                           const cw_atlas_desc *desc, cw_atlas_facts *facts, cw_error *err)
 {
     CWI_REQUIRE(err, meshes);
+    CWI_REQUIRE_VERSION(err, desc, 0);
     cw_mesh all = {0};
     cw_status st = check_meshes(meshes, scales, count, err);
     if (st == CW_OK)

@@ -338,6 +338,7 @@ cw_status cw_bake_meshes(const cw_mesh *const *meshes, size_t count, const cw_me
                          cw_error *err)
 {
     CWI_REQUIRE(err, meshes, full, images);
+    CWI_REQUIRE_VERSION(err, desc, 0);
     cw_mesh all = {0};
     memset(images, 0, CW_MAP_COUNT * sizeof *images);
     cw_status st = check_meshes(meshes, count, err);

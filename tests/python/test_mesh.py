@@ -215,6 +215,12 @@ class Coordinates(Case):
                 data = path.read_bytes()
                 self.assertIn(b'"normalTexture"', data)
                 self.assertIn(b"\x89PNG", data)
+                cw.write(path, [cw.Part("low", low, pictures={"color": b"\xff\xd8 jpeg"})])
+                part = cw.read_parts(path)[0]
+                self.assertEqual(part.pictures, {"color": b"\xff\xd8 jpeg"})
+                self.assertEqual(len(part.mesh.attributes["texture_coordinates"]), 3 * len(low.triangles))
+                with self.assertRaises(ValueError):
+                    cw.write(path, [cw.Part("low", low, pictures={"colour": b""})])
         self.assertRaises(ValueError, lambda: cw.bake_normals(low, low, size=8))
         with self.fails(cw.Status.ARGUMENT):
             cw.bake_normals(cw.extract(make_ball(), 0), low)

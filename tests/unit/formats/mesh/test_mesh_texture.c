@@ -195,7 +195,7 @@ static void normal_maps_are_embedded(void **state)
         assert_ok(cw_parts_write_loss("n.glb", parts, 1, NULL, &loss, &err), err);
         assert_int_equal(loss.dropped & CW_KEEPS_PICTURES, CW_KEEPS_PICTURES);
     }
-    assert_ok(cw_parts_write_loss("n.obj", parts, 1, NULL, &loss, &err), err);
+    assert_ok(cw_parts_write_loss("n.ply", parts, 1, NULL, &loss, &err), err);
     assert_int_equal(loss.dropped & CW_KEEPS_PICTURES, CW_KEEPS_PICTURES);
     cw_mesh_free(&cube);
 }
