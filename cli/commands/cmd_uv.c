@@ -1,6 +1,7 @@
 /* The command uv: texture coordinates, one square for all parts of a file, and a normal map. */
 #include "cli/commands/command_rows.h"
 #include "cli/commands/mesh_command.h"
+#include "cli/commands/uv_rebake.h"
 #include "cli/framework/console.h"
 #include "cli/framework/quantity.h"
 #include "core/base/status.h"
@@ -19,6 +20,7 @@ typedef struct uv_args {
     size_t atlas, margin;
     cli_number density;
     cli_length reach;
+    const char *rebake;
 } uv_args;
 
 typedef struct uv_state {
@@ -27,7 +29,8 @@ typedef struct uv_state {
     double reach_mm;
     cw_bake_facts baked;
     cw_textures textures;
-    uint8_t *png; /* of textures; owned */
+    uint8_t *png;       /* of textures; owned */
+    cli_rebake rebaked; /* of --rebake */
 } uv_state;
 
 static const uv_args *args_of(const cli_mesh_run *r)
@@ -49,12 +52,16 @@ static const cli_option options[] = {
      offsetof(uv_args, margin)},
     {"texel-density", 0, CLI_NUMBER, "D", "Texels for each mm (as many as fit)",
      offsetof(uv_args, density)},
-    CLI_HEADED("Normal map"),
+    CLI_HEADED("Pictures"),
     {"bake", 0, CLI_TEXT, "MESH",
      "Bake the normals of this mesh, which has more triangles, into a normal map of the output (none)",
      offsetof(cli_mesh_args, source), CLI_VALUES_MESH},
+    {"rebake", 0, CLI_TEXT, "MESH",
+     "Carry the pictures of this textured mesh over into the output's texture (none)",
+     offsetof(uv_args, rebake), CLI_VALUES_MESH},
     {"reach", 0, CLI_LENGTH, "L",
-     "How far the mesh of --bake may be (4% of the box's diagonal)", offsetof(uv_args, reach)},
+     "How far the mesh of --bake or --rebake may be (4% of the box's diagonal)",
+     offsetof(uv_args, reach)},
     CLI_HEADED("Parts"),
     CLI_MESH_MERGE,
     CLI_MESH_ORIENT,
@@ -63,7 +70,7 @@ static const cli_option options[] = {
 
 static const cli_rule rules[] = {
     {NULL, CLI_NEEDS, "output"},
-    {"reach", CLI_NEEDS, "bake"},
+    {"reach", CLI_NEEDS, "bake rebake"},
     CLI_COMPRESS_RULES,
 };
 
@@ -76,12 +83,24 @@ static void put_params(cli_json *j, const cli_mesh_run *r, const cli_made *made)
     cli_json_count(j, "margin", args->margin);
     if (args->density.given)
         cli_json_number(j, "texels_per_mm", args->density.value);
-    if (args->mesh.source)
+    if (args->mesh.source || args->rebake)
         cli_json_number(j, "reach_mm", ((const uv_state *)r->state)->reach_mm);
     cli_json_bool(j, "merge", r->args->merge);
     cli_json_bool(j, "orient", r->args->orient);
     cli_json_count(j, "merged_vertices", r->pieces.merged);
     cli_json_written(j, &r->args->written, made->path);
+}
+
+static void put_bake(cli_json *j, const char *key, const cw_bake_facts *f, bool has_normals)
+{
+    cli_json_open(j, key, '{');
+    cli_json_count(j, "texels", f->texels);
+    cli_json_count(j, "missed", f->missed);
+    cli_json_number(j, "max_mm", f->max_mm);
+    cli_json_number(j, "mean_mm", f->mean_mm);
+    if (has_normals)
+        cli_json_number(j, "mean_deg", f->mean_deg);
+    cli_json_close(j, '}');
 }
 
 static void put_facts(cli_json *j, const cli_mesh_run *r)
@@ -92,6 +111,8 @@ static void put_facts(cli_json *j, const cli_mesh_run *r)
         return;
     if (r->args->source)
         cli_json_mesh_file(j, "full", &s->full);
+    if (args_of(r)->rebake)
+        cli_json_mesh_file(j, "old", &s->rebaked.old);
     cli_json_open(j, "atlas", '{');
     cli_json_count(j, "charts", f->charts);
     cli_json_count(j, "seams", f->seams);
@@ -101,33 +122,28 @@ static void put_facts(cli_json *j, const cli_mesh_run *r)
     cli_json_number(j, "coverage", f->coverage);
     cli_json_count(j, "flipped", f->flipped);
     cli_json_close(j, '}');
-    if (!r->args->source)
-        return;
-    cli_json_open(j, "normal_map", '{');
-    cli_json_count(j, "texels", s->baked.texels);
-    cli_json_count(j, "missed", s->baked.missed);
-    cli_json_number(j, "max_mm", s->baked.max_mm);
-    cli_json_number(j, "mean_mm", s->baked.mean_mm);
-    cli_json_number(j, "mean_deg", s->baked.mean_deg);
-    cli_json_close(j, '}');
+    if (r->args->source)
+        put_bake(j, "normal_map", &s->baked, true);
+    if (args_of(r)->rebake)
+        put_bake(j, "pictures", &s->rebaked.facts, false);
 }
 
-/* Says how the normal map came out. */
-static void report_bake(cli_mesh_run *r)
+/* Says how a normal map or pictures came out. */
+static void report_bake(cli_mesh_run *r, const char *what, const char *path,
+                        const cw_bake_facts *f, const char *missing)
 {
     const uv_state *s = r->state;
     const size_t used = strlen(r->found);
-    const double missed = 100 * (double)s->baked.missed / (double)s->baked.texels;
-    snprintf(
-        r->found + used, sizeof r->found - used,
-        "; normal map of %s, at most %.3g mm away, mean %.2g mm; %.2g %% of the texels missed",
-        s->full.path, s->baked.max_mm, s->baked.mean_mm, missed);
+    const double missed = f->texels ? 100 * (double)f->missed / (double)f->texels : 0;
+    snprintf(r->found + used, sizeof r->found - used,
+             "; %s of %s, at most %.3g mm away, mean %.2g mm; %.2g %% of the texels missed",
+             what, path, f->max_mm, f->mean_mm, missed);
     if (missed > 1)
         cli_report_warn(
             &r->report,
             "%.2g %% of the texels found nothing within --reach %.3g mm of %s that faces "
-            "the same way: they are flat",
-            missed, s->reach_mm, s->full.path);
+            "the same way: they are %s",
+            missed, s->reach_mm, path, missing);
 }
 
 static cw_status report_facts(cli_mesh_run *r, cw_error *err)
@@ -140,8 +156,11 @@ static cw_status report_facts(cli_mesh_run *r, cw_error *err)
         cli_count(f->charts), f->charts == 1 ? "" : "s", cli_count(f->seams),
         cli_count(f->vertices), f->size, f->size, 100 * f->coverage, f->texels_per_mm,
         f->stretch);
+    const uv_state *s = r->state;
     if (r->args->source)
-        report_bake(r);
+        report_bake(r, "normal map", s->full.path, &s->baked, "flat");
+    if (args_of(r)->rebake)
+        report_bake(r, "pictures", s->rebaked.old.path, &s->rebaked.facts, "white");
     if (f->flipped)
         cli_report_warn(&r->report, "single precision turned %s triangles over: --atlas %u",
                         cli_count(f->flipped), 2 * f->size);
@@ -160,10 +179,10 @@ static cw_status check_values(cli_mesh_run *r, cw_error *err)
     if (args->margin < 1 || args->margin > 64)
         return cwi_fail(err, CW_ERR_ARGUMENT, "--margin %zu: expected 1 to 64", args->margin);
     const cw_format *format = cw_mesh_format(args->mesh.output, args->mesh.written.format);
-    if (args->mesh.source && format && !(format->keeps & CW_KEEPS_PICTURES))
+    if ((args->mesh.source || args->rebake) && format && !(format->keeps & CW_KEEPS_PICTURES))
         return cwi_fail(err, CW_ERR_ARGUMENT,
-                        "%s holds no pictures; --bake is for .glb, .gltf and .obj",
-                        format->name);
+                        "%s holds no pictures; --%s is for .glb, .gltf and .obj", format->name,
+                        args->mesh.source ? "bake" : "rebake");
     if (args->density.given && !(args->density.value > 0))
         return cwi_fail(err, CW_ERR_ARGUMENT, "--texel-density %g: expected more than 0",
                         args->density.value);
@@ -216,13 +235,18 @@ static cw_status share_coordinates(cli_pieces *p, const cw_mesh *all, cw_error *
     return st;
 }
 
-/* Reads the mesh whose normals are baked. */
+/* Reads the mesh whose normals are baked, and the one whose pictures are. */
 static cw_status read_full(cli_mesh_run *r, cw_error *err)
 {
     uv_state *s = r->state;
-    return r->args->source
-               ? cli_read_reference(r->args->source, NULL, &r->args->input, &s->full, err)
-               : CW_OK;
+    const char *rebake = args_of(r)->rebake;
+    cw_status st = r->args->source ? cli_read_reference(r->args->source, NULL, &r->args->input,
+                                                        &s->full, err)
+                                   : CW_OK;
+    if (st == CW_OK && rebake && r->outputs.count)
+        st = cli_check_output(r->outputs.path[0], &rebake, 1, err);
+    return st == CW_OK && rebake ? cli_rebake_read(rebake, &r->args->input, &s->rebaked, err)
+                                 : st;
 }
 
 static cw_status resolve_reach(cli_mesh_run *r, cw_error *err)
@@ -264,14 +288,17 @@ static cw_status bake(cli_mesh_run *r, cw_error *err)
         .reach_mm = s->reach_mm,
         .threads = r->threads,
         .progress = cli_progress((double)(args->atlas * args->atlas) / 1e6, "Mtexel")};
+    const bool has_full = r->args->source != NULL;
     cw_status st = join_finished(&r->pieces, &all, err);
-    if (st == CW_OK && !s->full.mesh.normals)
+    if (st == CW_OK && has_full && !s->full.mesh.normals)
         st = cw_mesh_weld(&s->full.mesh, NULL, err);
-    if (st == CW_OK)
+    if (st == CW_OK && has_full)
         st = cw_bake_normals(&all, &s->full.mesh, &desc, &image, &s->baked, err);
-    if (st == CW_OK)
+    if (st == CW_OK && has_full)
         st = cw_image_encode(&image, false, &s->png, &s->textures.normal.size, err);
     s->textures.normal.bytes = s->png;
+    if (st == CW_OK && args_of(r)->rebake)
+        st = cli_rebake_run(&s->rebaked, &all, &desc, &s->textures, err);
     r->pieces.textures = &s->textures;
     cw_image_free(&image);
     cw_mesh_free(&all);
@@ -295,15 +322,17 @@ static cw_status lay_flat(cli_mesh_run *r, cw_error *err)
         r->pieces.piece[n].textures = NULL;
     }
     cw_status st = join_pieces(&r->pieces, &all, err);
-    if (st == CW_OK && had_pictures)
-        cli_say("%s: pictures lost: they lie by the texture coordinates that it had",
-                r->mesh.path);
+    if (st == CW_OK && had_pictures && !args->rebake)
+        cli_say(
+            "%s: pictures lost: they lie by the texture coordinates that it had; --rebake %s "
+            "carries them over",
+            r->mesh.path, r->mesh.path);
     if (st == CW_OK)
         st = cw_mesh_atlas(&all, &desc, &s->facts, err);
     if (st == CW_OK)
         st = share_coordinates(&r->pieces, &all, err);
     cw_mesh_free(&all);
-    return st == CW_OK && r->args->source ? bake(r, err) : st;
+    return st == CW_OK && (r->args->source || args->rebake) ? bake(r, err) : st;
 }
 
 static const cli_mesh_command uv = {
@@ -323,6 +352,7 @@ static cw_status run_uv(void *args, cw_error *err)
     const cw_status st = cli_run_mesh_command(&uv, args, &state, 1, err);
     cli_free_mesh(&state.full);
     cw_bytes_free(state.png);
+    cli_rebake_free(&state.rebaked);
     return st;
 }
 

@@ -9,6 +9,8 @@
 #include "core/mesh/mesh.h"
 #include "core/texture/split_seams.h"
 #include "core/texture/tangents.h"
+#include "simplify/bake/bake_frame.h"
+#include "simplify/bake/bake_input.h"
 #include "simplify/bake/texels.h"
 
 #include <math.h>
@@ -21,8 +23,6 @@ enum {
     DEFAULT_MARGIN = 2,
     MAX_MARGIN = 64
 };
-
-static const double DEFAULT_REACH = 0.04;
 
 /* Sums over a row of texels. */
 typedef struct row_facts {
@@ -43,51 +43,6 @@ typedef struct baking {
     row_facts *rows;
 } baking;
 
-/* The frame of a texel: place, normal, tangent and bitangent. */
-typedef struct texel_frame {
-    double point[3], normal[3], tangent[3], bitangent[3];
-} texel_frame;
-
-typedef struct facing_search {
-    const baking *b;
-    const double *point, *normal;
-    uint32_t triangle;
-} facing_search;
-
-/* --- the full surface --------------------------------------------------------------------- */
-
-static void measure_facing(void *context, size_t slot, double *distance_sq)
-{
-    facing_search *s = context;
-    const cw_mesh *m = s->b->full;
-    const uint32_t t = s->b->tree.order[slot], *v = m->triangles + 3 * (size_t)t;
-    const cwi_facet_view f =
-        cwi_facet_look(m->positions + 3 * (size_t)v[0], m->positions + 3 * (size_t)v[1],
-                       m->positions + 3 * (size_t)v[2], s->point);
-    if (!(cwi_dot(f.normal, s->normal) > 0))
-        return;
-    const double here = cwi_facet_view_distance_sq(&f);
-    if (here < *distance_sq) {
-        *distance_sq = here;
-        s->triangle = t;
-    }
-}
-
-/* Finds the nearest triangle that faces the same way, and the square of its distance. bound: where one is
- * thought to be; else all in reach are looked at. */
-static uint32_t find_facing(const baking *b, const double point[3], const double normal[3],
-                            double bound, double *distance_sq)
-{
-    facing_search s = {.b = b, .point = point, .normal = normal, .triangle = CWI_NO_TEXEL};
-    *distance_sq = fmin(bound * bound, b->reach * b->reach);
-    cwi_boxes_nearest(&b->tree, point, measure_facing, &s, distance_sq);
-    if (s.triangle == CWI_NO_TEXEL && bound < b->reach) {
-        *distance_sq = b->reach * b->reach;
-        cwi_boxes_nearest(&b->tree, point, measure_facing, &s, distance_sq);
-    }
-    return s.triangle;
-}
-
 /* Interpolates the normal of the full surface at its point nearest to another one. */
 static bool find_normal(const baking *b, uint32_t triangle, const double point[3],
                         double normal[3])
@@ -105,56 +60,6 @@ static bool find_normal(const baking *b, uint32_t triangle, const double point[3
     return cwi_normalise(normal);
 }
 
-/* --- texels ------------------------------------------------------------------------------- */
-
-/* Interpolates the frame that a viewer has at a texel. */
-static void find_frame(const baking *b, uint32_t triangle, uint32_t x, uint32_t y,
-                       texel_frame *f)
-{
-    const cw_mesh *m = &b->mesh;
-    const uint32_t *v = m->triangles + 3 * (size_t)triangle;
-    double weights[3];
-    *f = (texel_frame){0};
-    cwi_texel_weights(cwi_texture_of(m)->data, v, b->size, x, y, weights);
-    for (int c = 0; c < 3; c++) {
-        const float *p = m->positions + 3 * (size_t)v[c], *n = m->normals + 3 * (size_t)v[c],
-                    *t = b->tangents[v[c]];
-        const double normal[3] = {(double)n[0], (double)n[1], (double)n[2]},
-                     tangent[3] = {(double)t[0], (double)t[1], (double)t[2]};
-        double across[3];
-        cwi_cross(normal, tangent, across);
-        for (int k = 0; k < 3; k++) {
-            f->point[k] += weights[c] * (double)p[k];
-            f->normal[k] += weights[c] * normal[k];
-            f->tangent[k] += weights[c] * tangent[k];
-            f->bitangent[k] += weights[c] * (double)t[3] * across[k];
-        }
-    }
-    cwi_normalise(f->normal);
-    cwi_normalise(f->tangent);
-    cwi_normalise(f->bitangent);
-}
-
-/* Writes a direction as a texel: its shares of the frame's three directions. */
-static void put_normal(const texel_frame *f, const double normal[3], uint8_t *pixel)
-{
-    double across[3], shares[3];
-    cwi_cross(f->bitangent, f->normal, across);
-    const double volume = cwi_dot(f->tangent, across);
-    shares[0] = cwi_dot(normal, across) / volume;
-    cwi_cross(f->normal, f->tangent, across);
-    shares[1] = cwi_dot(normal, across) / volume;
-    cwi_cross(f->tangent, f->bitangent, across);
-    shares[2] = cwi_dot(normal, across) / volume;
-    if (!(fabs(volume) > 1e-3) || !cwi_normalise(shares)) {
-        shares[0] = shares[1] = 0;
-        shares[2] = 1;
-    }
-    for (int k = 0; k < 3; k++)
-        pixel[k] = (uint8_t)floor(127.5 * (shares[k] + 1) + 0.5);
-    pixel[3] = 255;
-}
-
 static void bake_row(void *context, size_t y)
 {
     baking *b = context;
@@ -163,27 +68,31 @@ static void bake_row(void *context, size_t y)
     for (uint32_t x = 0; x < b->size; x++) {
         const uint32_t triangle = b->triangle[y * b->size + x];
         uint8_t *pixel = b->pixels + 4 * (y * b->size + x);
-        texel_frame f;
-        double point[3], normal[3], distance_sq;
+        cwi_texel_frame f;
+        double point[3], normal[3], weights[3], distance_sq;
         if (triangle == CWI_NO_TEXEL) {
             last_mm = INFINITY;
             continue;
         }
-        find_frame(b, triangle, x, (uint32_t)y, &f);
+        cwi_texel_weights(cwi_texture_of(&b->mesh)->data,
+                          b->mesh.triangles + 3 * (size_t)triangle, b->size, x, (uint32_t)y,
+                          weights);
+        cwi_texel_frame_find(&b->mesh, (const float(*)[4])b->tangents, triangle, weights, &f);
         for (int k = 0; k < 3; k++)
             point[k] = f.point[k] + b->shift[k];
         const double bound = (last_mm + cwi_distance(point, last)) * (1 + 1e-9);
-        const uint32_t found = find_facing(b, point, f.normal, bound, &distance_sq);
+        const uint32_t found =
+            cwi_facing_find(b->full, &b->tree, point, f.normal, bound, b->reach, &distance_sq);
         facts->texels++;
         if (found == CWI_NO_TEXEL || !find_normal(b, found, point, normal)) {
             facts->missed++;
             last_mm = INFINITY;
-            put_normal(&f, f.normal, pixel);
+            cwi_texel_put_normal(&f, f.normal, pixel);
             continue;
         }
         last_mm = sqrt(distance_sq);
         memcpy(last, point, sizeof last);
-        put_normal(&f, normal, pixel);
+        cwi_texel_put_normal(&f, normal, pixel);
         facts->max_mm = fmax(facts->max_mm, last_mm);
         facts->sum_mm += last_mm;
         facts->sum_deg += acos(fmax(-1, fmin(1, cwi_dot(normal, f.normal)))) * 180 / CWI_PI;
@@ -230,7 +139,7 @@ static cw_status prepare(baking *b, const cw_mesh *mesh, const cw_mesh *full,
     if (st != CW_OK)
         return st;
     b->size = d->size;
-    b->reach = d->reach_mm > 0 ? d->reach_mm : DEFAULT_REACH * find_diagonal(mesh);
+    b->reach = d->reach_mm > 0 ? d->reach_mm : CWI_BAKE_REACH * find_diagonal(mesh);
     for (int k = 0; k < 3; k++)
         b->shift[k] = mesh->origin[k] - full->origin[k];
     b->tangents = cwi_alloc_array(b->mesh.vertex_count, sizeof *b->tangents);
@@ -260,8 +169,16 @@ static cw_status bake(baking *b, const cw_bake_desc *d, cw_image *image, cw_erro
     return st;
 }
 
-static cw_status check_inputs(const cw_mesh *mesh, const cw_mesh *full, const cw_bake_desc *d,
-                              cw_error *err)
+cw_bake_desc cwi_bake_defaults(const cw_bake_desc *desc)
+{
+    cw_bake_desc d = desc ? *desc : (cw_bake_desc){0};
+    d.size = d.size ? d.size : DEFAULT_SIZE;
+    d.margin = d.margin ? d.margin : DEFAULT_MARGIN;
+    return d;
+}
+
+cw_status cwi_bake_check(const cw_mesh *mesh, const cw_mesh *full, const cw_bake_desc *d,
+                         cw_error *err)
 {
     if (d->size < MIN_SIZE || d->size > MAX_SIZE)
         return cwi_fail(err, CW_ERR_ARGUMENT, "desc->size %u: expected %d to %d", d->size,
@@ -290,12 +207,10 @@ cw_status cw_bake_normals(const cw_mesh *mesh, const cw_mesh *full, const cw_bak
 {
     CWI_REQUIRE(err, mesh, full, image);
     CWI_REQUIRE_VERSION(err, desc, 0);
-    cw_bake_desc d = desc ? *desc : (cw_bake_desc){0};
-    d.size = d.size ? d.size : DEFAULT_SIZE;
-    d.margin = d.margin ? d.margin : DEFAULT_MARGIN;
+    const cw_bake_desc d = cwi_bake_defaults(desc);
     *image = (cw_image){0};
     baking b = {0};
-    cw_status st = check_inputs(mesh, full, &d, err);
+    cw_status st = cwi_bake_check(mesh, full, &d, err);
     if (st == CW_OK)
         st = prepare(&b, mesh, full, &d, err);
     if (st == CW_OK)
