@@ -27,7 +27,14 @@ for file in torus.ply cells.obj; do
             grep -q 'not in this build' said || { cat said; exit 1; }
     done
 done
-node "$here/validate_glb.mjs" uv/*.glb packed/*.glb >issues
+# pictures: a normal map that stays while triangles go, and is carried over
+mkdir pictures
+cubewright simplify torus.ply -n 600 -o low.ply --no-measure -q
+cubewright uv low.ply --bake torus.ply --atlas 128 -o pictures/low.glb -q || exit 1
+cubewright simplify pictures/low.glb -n 300 -o pictures/lower.glb -q || exit 1
+cubewright convert pictures/low.glb -o low.obj -q && cubewright convert low.obj -o pictures/again.glb -q || exit 1
+cubewright uv torus.ply --rebake pictures/low.glb --atlas 128 -o pictures/carried.glb -q || exit 1
+node "$here/validate_glb.mjs" uv/*.glb packed/*.glb pictures/*.glb >issues
 [ $? = 77 ] && exit 77
 grep -E ': (error|warning) ' issues && exit 1 # it informs of coordinates that no texture uses yet
 node "$here/texture.mjs" uv/*.glb
