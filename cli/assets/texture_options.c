@@ -235,19 +235,22 @@ void cli_json_atlas(cli_json *j, const cw_atlas_facts *f)
     cli_json_close(j, '}');
 }
 
-void cli_json_maps(cli_json *j, const cw_bake_facts *f)
+void cli_json_maps(cli_json *j, const char *key, const cw_bake_facts *f)
 {
-    cli_json_open(j, "maps", '{');
+    cli_json_open(j, key, '{');
     cli_json_number(j, "reach_mm", f->reach_mm);
-    cli_json_number(j, "occlusion_mm", f->occlusion_mm);
-    cli_json_number(j, "thickness_mm", f->thickness_mm);
+    if (f->occlusion_mm > 0) {
+        cli_json_number(j, "occlusion_mm", f->occlusion_mm);
+        cli_json_number(j, "thickness_mm", f->thickness_mm);
+    }
     if (f->curvature_max > 0)
         cli_json_number(j, "curvature_max", f->curvature_max);
     cli_json_count(j, "texels", f->texels);
     cli_json_count(j, "missed", f->missed);
     cli_json_number(j, "max_mm", f->max_mm);
     cli_json_number(j, "mean_mm", f->mean_mm);
-    cli_json_number(j, "mean_deg", f->mean_deg);
+    if (f->occlusion_mm > 0) /* maps, no pictures */
+        cli_json_number(j, "mean_deg", f->mean_deg);
     cli_json_close(j, '}');
 }
 
@@ -267,10 +270,11 @@ static double missed_percent(const cw_bake_facts *f)
     return f->texels ? 100 * (double)f->missed / (double)f->texels : 0;
 }
 
-void cli_maps_text(const cw_bake_facts *f, const char *source, char text[CLI_TEXTURE_TEXT])
+void cli_maps_text(const cw_bake_facts *f, const char *what, const char *source,
+                   char text[CLI_TEXTURE_TEXT])
 {
     snprintf(text, CLI_TEXTURE_TEXT,
-             "maps of %s, at most %.3g mm away, mean %.2g mm; %.2g %% of the texels missed",
+             "%s of %s, at most %.3g mm away, mean %.2g mm; %.2g %% of the texels missed", what,
              source, f->max_mm, f->mean_mm, missed_percent(f));
 }
 

@@ -83,15 +83,16 @@ CW_NODISCARD cw_status cli_write_maps(const cli_maps *maps, const char *output, 
 /* Write the settings into the open object. */
 void cli_json_texture(cli_json *j, const cli_texture_args *args);
 
-/* Write the objects "atlas" and "maps". */
+/* Write the objects "atlas", and `key` of maps. */
 void cli_json_atlas(cli_json *j, const cw_atlas_facts *facts);
-void cli_json_maps(cli_json *j, const cw_bake_facts *facts);
+void cli_json_maps(cli_json *j, const char *key, const cw_bake_facts *facts);
 
 enum { CLI_TEXTURE_TEXT = 320 };
 
-/* Print the facts in words. source: the surface that was baked, such as a file */
+/* Print the facts in words. what: "maps" or "pictures"; source: the surface that was baked, such as a file */
 void cli_atlas_text(const cw_atlas_facts *facts, char text[CLI_TEXTURE_TEXT]);
-void cli_maps_text(const cw_bake_facts *facts, const char *source, char text[CLI_TEXTURE_TEXT]);
+void cli_maps_text(const cw_bake_facts *facts, const char *what, const char *source,
+                   char text[CLI_TEXTURE_TEXT]);
 
 /* Returns the share of texels that found nothing, in percent, where it is worth a warning; else 0. */
 double cli_find_missed(const cw_bake_facts *facts);

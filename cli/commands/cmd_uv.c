@@ -2,11 +2,13 @@
 #include "cli/assets/texture_options.h"
 #include "cli/commands/command_rows.h"
 #include "cli/commands/mesh_command.h"
+#include "cli/commands/uv_rebake.h"
 #include "cli/framework/console.h"
 #include "cli/framework/quantity.h"
 #include "core/base/memory.h"
 #include "core/base/status.h"
 #include "core/mesh/mesh.h"
+#include "core/texture/gather_meshes.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -15,6 +17,7 @@
 typedef struct uv_args {
     cli_mesh_args mesh;
     cli_texture_args texture;
+    const char *rebake;
 } uv_args;
 
 typedef struct uv_state {
@@ -23,6 +26,7 @@ typedef struct uv_state {
     double reach_mm; /* 0: the default */
     cw_bake_facts baked;
     cli_maps maps;
+    cli_rebake rebaked; /* of --rebake */
 } uv_state;
 
 static const uv_args *args_of(const cli_mesh_run *r)
@@ -36,15 +40,18 @@ static const cli_option options[] = {
     CLI_MESH_OUTPUT(""),
     CLI_HEADED("Texture"),
     CLI_ATLAS_OPTIONS(offsetof(uv_args, texture)),
-    CLI_HEADED("Maps"),
+    CLI_HEADED("Pictures"),
     {"bake", 0, CLI_TEXT, "MESH",
      "Bake the surface of this mesh, which has more triangles, into maps of the output (none)",
      offsetof(cli_mesh_args, source), CLI_VALUES_MESH},
     {"maps", 0, CLI_TEXT, "NAME[,NAME...]",
      "Maps that --bake makes: normals, occlusion, curvature, thickness, colors (normals)",
      offsetof(uv_args, texture) + offsetof(cli_texture_args, maps)},
+    {"rebake", 0, CLI_TEXT, "MESH",
+     "Carry the pictures of this textured mesh over into the output's texture (none)",
+     offsetof(uv_args, rebake), CLI_VALUES_MESH},
     {"reach", 0, CLI_LENGTH, "L",
-     "How far the mesh of --bake may be (4% of the box's diagonal)",
+     "How far the mesh of --bake or --rebake may be (4% of the box's diagonal)",
      offsetof(uv_args, texture) + offsetof(cli_texture_args, reach)},
     CLI_HEADED("Parts"),
     CLI_MESH_MERGE,
@@ -54,7 +61,8 @@ static const cli_option options[] = {
 
 static const cli_rule rules[] = {
     {NULL, CLI_NEEDS, "output"},
-    {"maps map-bits reach", CLI_NEEDS, "bake"},
+    {"maps map-bits", CLI_NEEDS, "bake"},
+    {"reach", CLI_NEEDS, "bake rebake"},
     CLI_COMPRESS_RULES,
 };
 
@@ -76,36 +84,43 @@ static void put_facts(cli_json *j, const cli_mesh_run *r)
         return;
     if (r->args->source)
         cli_json_mesh_file(j, "full", &s->full);
+    if (args_of(r)->rebake)
+        cli_json_mesh_file(j, "old", &s->rebaked.old);
     cli_json_atlas(j, &s->facts);
     if (r->args->source)
-        cli_json_maps(j, &s->baked);
+        cli_json_maps(j, "maps", &s->baked);
+    if (args_of(r)->rebake)
+        cli_json_maps(j, "pictures", &s->rebaked.facts);
 }
 
-/* Says how the maps came out. */
-static void report_bake(cli_mesh_run *r)
+/* Says how maps or pictures came out. missing: what texels are that found nothing */
+static void report_bake(cli_mesh_run *r, const char *what, const char *path,
+                        const cw_bake_facts *f, const char *missing)
 {
-    const uv_state *s = r->state;
     const size_t used = strlen(r->found);
     char text[CLI_TEXTURE_TEXT];
-    const double missed = cli_find_missed(&s->baked);
-    cli_maps_text(&s->baked, s->full.path, text);
+    const double missed = cli_find_missed(f);
+    cli_maps_text(f, what, path, text);
     snprintf(r->found + used, sizeof r->found - used, "; %s", text);
     if (missed > 0)
         cli_report_warn(
             &r->report,
             "%.2g %% of the texels found nothing within --reach %.3g mm of %s that faces "
-            "the same way: they are flat",
-            missed, s->baked.reach_mm, s->full.path);
+            "the same way: they are %s",
+            missed, f->reach_mm, path, missing);
 }
 
 static cw_status report_facts(cli_mesh_run *r, cw_error *err)
 {
-    const cw_atlas_facts *f = &((const uv_state *)r->state)->facts;
+    const uv_state *s = r->state;
+    const cw_atlas_facts *f = &s->facts;
     char text[CLI_TEXTURE_TEXT];
     cli_atlas_text(f, text);
     snprintf(r->found, sizeof r->found, "; %s", text);
     if (r->args->source)
-        report_bake(r);
+        report_bake(r, "maps", s->full.path, &s->baked, "flat");
+    if (args_of(r)->rebake)
+        report_bake(r, "pictures", s->rebaked.old.path, &s->rebaked.facts, "white");
     if (f->flipped)
         cli_report_warn(&r->report, "single precision turned %s triangles over: --atlas %u",
                         cli_count(f->flipped), 2 * f->size);
@@ -118,6 +133,11 @@ static cw_status check_values(cli_mesh_run *r, cw_error *err)
     cli_texture_args texture = args_of(r)->texture;
     if (r->args->source && !texture.maps)
         texture.maps = "normals";
+    const cw_format *format = cw_mesh_format(r->args->output, r->args->written.format);
+    if (args_of(r)->rebake && format && !(format->keeps & CW_KEEPS_PICTURES))
+        return cwi_fail(err, CW_ERR_ARGUMENT,
+                        "%s holds no pictures; --rebake is for .glb, .gltf and .obj",
+                        format->name);
     return cli_check_texture(&texture, r->args->output, r->args->written.format, err);
 }
 
@@ -137,13 +157,18 @@ static cw_status copy_pieces(cli_pieces *p, cw_mesh ***list, cw_error *err)
     return st;
 }
 
-/* Reads the mesh whose normals are baked. */
+/* Reads the mesh whose normals are baked, and the one whose pictures are. */
 static cw_status read_full(cli_mesh_run *r, cw_error *err)
 {
     uv_state *s = r->state;
-    return r->args->source
-               ? cli_read_reference(r->args->source, NULL, &r->args->input, &s->full, err)
-               : CW_OK;
+    const char *rebake = args_of(r)->rebake;
+    cw_status st = r->args->source ? cli_read_reference(r->args->source, NULL, &r->args->input,
+                                                        &s->full, err)
+                                   : CW_OK;
+    if (st == CW_OK && rebake && r->outputs.count)
+        st = cli_check_output(r->outputs.path[0], &rebake, 1, err);
+    return st == CW_OK && rebake ? cli_rebake_read(rebake, &r->args->input, &s->rebaked, err)
+                                 : st;
 }
 
 static cw_status resolve_reach(cli_mesh_run *r, cw_error *err)
@@ -153,12 +178,42 @@ static cw_status resolve_reach(cli_mesh_run *r, cw_error *err)
                            err);
 }
 
+static cw_status bake_full(cli_mesh_run *r, cw_mesh *const *list, const cw_bake_desc *desc,
+                           cw_error *err)
+{
+    uv_state *s = r->state;
+    cw_image images[CW_MAP_COUNT] = {{0}};
+    cw_status st = s->full.mesh.normals ? CW_OK : cw_mesh_weld(&s->full.mesh, NULL, err);
+    if (st == CW_OK)
+        st = cw_bake_meshes((const cw_mesh *const *)list, r->pieces.count, &s->full.mesh, desc,
+                            images, &s->baked, err);
+    if (st == CW_ERR_ARGUMENT && cli_find_maps(&args_of(r)->texture) >> CW_MAP_COLORS & 1)
+        r->blamed = s->full.path;
+    if (st == CW_OK)
+        st = cli_encode_maps(images, &s->maps, err);
+    for (int m = 0; m < CW_MAP_COUNT; m++)
+        cw_image_free(&images[m]);
+    return st;
+}
+
+static cw_status bake_pictures(cli_mesh_run *r, cw_mesh *const *list, const cw_bake_desc *desc,
+                               cw_error *err)
+{
+    uv_state *s = r->state;
+    cw_mesh all = {0};
+    cw_status st = cwi_gather_meshes((const cw_mesh *const *)list, NULL, r->pieces.count, true,
+                                     true, &all, err);
+    if (st == CW_OK)
+        st = cli_rebake_run(&s->rebaked, &all, desc, &s->maps.textures, err);
+    cw_mesh_free(&all);
+    return st;
+}
+
 /* Bakes the maps of all pieces. Normals that the full mesh lacks are made once its corners are
  * joined. */
 static cw_status bake(cli_mesh_run *r, cw_mesh *const *list, cw_error *err)
 {
     uv_state *s = r->state;
-    cw_image images[CW_MAP_COUNT] = {{0}};
     cw_bake_desc desc = cli_bake_desc(&args_of(r)->texture, s->reach_mm);
     cw_status st = CW_OK;
     desc.size = s->facts.size;
@@ -167,22 +222,15 @@ static cw_status bake(cli_mesh_run *r, cw_mesh *const *list, cw_error *err)
     desc.progress = cli_progress((double)desc.size * desc.size / 1e6, "Mtexel");
     for (size_t n = 0; n < r->pieces.count && st == CW_OK; n++)
         st = list[n]->normals ? CW_OK : cw_mesh_normals(list[n], err);
-    if (st == CW_OK && !s->full.mesh.normals)
-        st = cw_mesh_weld(&s->full.mesh, NULL, err);
-    if (st == CW_OK)
-        st = cw_bake_meshes((const cw_mesh *const *)list, r->pieces.count, &s->full.mesh, &desc,
-                            images, &s->baked, err);
-    if (st == CW_ERR_ARGUMENT && cli_find_maps(&args_of(r)->texture) >> CW_MAP_COLORS & 1)
-        r->blamed = s->full.path;
-    if (st == CW_OK)
-        st = cli_encode_maps(images, &s->maps, err);
-    r->pieces.textures = cli_find_textures(&s->maps);
-    for (int m = 0; m < CW_MAP_COUNT; m++)
-        cw_image_free(&images[m]);
+    if (st == CW_OK && r->args->source)
+        st = bake_full(r, list, &desc, err);
+    if (st == CW_OK && args_of(r)->rebake)
+        st = bake_pictures(r, list, &desc, err);
+    r->pieces.textures = args_of(r)->rebake ? &s->maps.textures : cli_find_textures(&s->maps);
     return st;
 }
 
-/* Forgets the pictures that the mesh came with, and says so. */
+/* Forgets the pictures that the mesh came with, and says so unless they are carried over. */
 static void drop_pictures(cli_mesh_run *r)
 {
     bool had_pictures = false;
@@ -190,9 +238,11 @@ static void drop_pictures(cli_mesh_run *r)
         had_pictures = had_pictures || r->pieces.piece[n].textures;
         r->pieces.piece[n].textures = NULL;
     }
-    if (had_pictures)
-        cli_say("%s: pictures lost: they lie by the texture coordinates that it had",
-                r->mesh.path);
+    if (had_pictures && !args_of(r)->rebake)
+        cli_say(
+            "%s: pictures lost: they lie by the texture coordinates that it had; --rebake %s "
+            "carries them over",
+            r->mesh.path, r->mesh.path);
 }
 
 static cw_status lay_flat(cli_mesh_run *r, cw_error *err)
@@ -206,7 +256,7 @@ static cw_status lay_flat(cli_mesh_run *r, cw_error *err)
     cw_status st = copy_pieces(&r->pieces, &list, err);
     if (st == CW_OK)
         st = cw_meshes_atlas(list, NULL, r->pieces.count, &desc, &s->facts, err);
-    if (st == CW_OK && r->args->source)
+    if (st == CW_OK && (r->args->source || args_of(r)->rebake))
         st = bake(r, list, err);
     free(list);
     return st;
@@ -237,6 +287,7 @@ static cw_status run_uv(void *args, cw_error *err)
     const cw_status st = cli_run_mesh_command(&uv, args, &state, 1, err);
     cli_free_mesh(&state.full);
     cli_free_maps(&state.maps);
+    cli_rebake_free(&state.rebaked);
     return st;
 }
 

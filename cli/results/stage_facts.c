@@ -230,7 +230,7 @@ static void tell_maps(const cli_staged *s)
 {
     char text[CLI_TEXTURE_TEXT];
     const double missed = cli_find_missed(&s->facts->baked);
-    cli_maps_text(&s->facts->baked, "the full surface", text);
+    cli_maps_text(&s->facts->baked, "maps", "the full surface", text);
     cli_say("%s: %s", s->subject, text);
     if (missed > 0)
         cli_report_warn(
@@ -243,7 +243,7 @@ static void tell_maps(const cli_staged *s)
 static void put_maps(cli_json *j, const cw_pipeline_facts *f, double least_mm3)
 {
     (void)least_mm3;
-    cli_json_maps(j, &f->baked);
+    cli_json_maps(j, "maps", &f->baked);
 }
 
 /* --- the table ------------------------------------------------------------------------------ */

@@ -115,6 +115,42 @@ CW_API CW_NODISCARD cw_status cw_bake_meshes(const cw_mesh *const *meshes, size_
                                              const cw_mesh *full, const cw_bake_desc *desc,
                                              cw_image *images, cw_bake_facts *facts,
                                              cw_error *err);
+/* The pictures of a material. */
+typedef enum cw_picture_use {
+    CW_PICTURE_COLOR,
+    CW_PICTURE_NORMAL, /* a normal map in tangent space */
+    CW_PICTURE_METALLIC_ROUGHNESS,
+    CW_PICTURE_OCCLUSION,
+    CW_PICTURE_EMISSIVE,
+    CW_PICTURE_USES
+} cw_picture_use;
+
+/* A textured surface, with its decoded pictures. */
+typedef struct cw_bake_source {
+    const cw_mesh *mesh; /* with texture coordinates, if it has pictures */
+    const cw_image *pictures[CW_PICTURE_USES]; /* NULL: none */
+    bool repeats; /* the pictures go on beyond 0 and 1; default: they end there */
+} cw_bake_source;
+
+/* Bakes the pictures of textured surfaces into the texture of another mesh, such as one that was remeshed.
+ *
+ * Each texel takes the values of the nearest point that faces the same way, between four pixels of the
+ * stored numbers (colours in sRGB, as they are). Normals are turned into the tangent space of the mesh. Where a
+ * source has no picture of a use that another one has, texels are white, and normals those of its surface. Texels
+ * that miss are white and flat.
+ *
+ * mesh      as in cw_bake_normals()
+ * sources   count, borrowed; without normals, those of their triangles are averaged at vertices
+ * desc      borrowed; NULL means all defaults
+ * pictures  CW_PICTURE_USES of them: those that some source has are allocated and filled on success, the
+ *           others zeroed; free each with cw_image_free()
+ * facts     may be NULL
+ *
+ * Returns   as cw_bake_normals(); CW_ERR_ARGUMENT for pictures without texture coordinates */
+CW_API CW_NODISCARD cw_status cw_bake_pictures(const cw_mesh *mesh,
+                                               const cw_bake_source *sources, size_t count,
+                                               const cw_bake_desc *desc, cw_image *pictures,
+                                               cw_bake_facts *facts, cw_error *err);
 
 #ifdef __cplusplus
 }

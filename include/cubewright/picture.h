@@ -113,6 +113,15 @@ CW_NODISCARD CW_API cw_status cw_image_write(const char *path, const cw_image *i
 CW_NODISCARD CW_API cw_status cw_image_encode(const cw_image *image, bool is_color,
                                               uint8_t **bytes, size_t *size, cw_error *err);
 
+/* Decodes the bytes of a PNG or JPEG file. Greys become colours, 16 bits 8; without alpha all is opaque.
+ * bytes    borrowed
+ * image    allocated and filled on success; free it with cw_image_free()
+ * Returns  CW_ERR_UNSUPPORTED  another format, a JPEG that is not grey or of three colours, or this build
+ *                              lacks their libraries
+ *          CW_ERR_FORMAT for a damaged file; CW_ERR_LIMIT beyond 16384 pixels a side; CW_ERR_NO_MEMORY */
+CW_NODISCARD CW_API cw_status cw_image_decode(const uint8_t *bytes, size_t size,
+                                              cw_image *image, cw_error *err);
+
 /* Frees the bytes of a file in memory.
  * bytes  those of cw_image_encode(), or NULL */
 CW_API void cw_bytes_free(uint8_t *bytes);

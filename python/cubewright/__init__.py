@@ -13,7 +13,7 @@ threads at once, as long as none writes to its arrays.
 """
 
 from ._about import Feature, Format, features, formats, make
-from ._atlas import Atlas, Baked, TextureDistance, atlas, bake_maps, bake_normals, texture_distance
+from ._atlas import Atlas, Baked, TextureDistance, atlas, bake_maps, bake_normals, bake_pictures, texture_distance
 from ._boolean import Combined, boolean
 from ._check import Check, Verdict, check, report
 from ._color import color_by
@@ -65,8 +65,8 @@ __all__ = [
     "Written",
     "atlas",
     "bake_maps",
-    "bake_maps",
     "bake_normals",
+    "bake_pictures",
     "boolean",
     "check",
     "close_handles",

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from ctypes import byref
+from collections.abc import Iterable, Sequence
+from ctypes import byref, c_uint8, pointer
 from dataclasses import dataclass
 from typing import Any
 
@@ -13,10 +13,11 @@ import numpy.typing as npt
 from . import _declarations as c
 from ._errors import call
 from ._library import lib
-from ._memory import unpack
+from ._memory import Owner, unpack
 from ._mesh import Mesh, take_mesh
 from ._options import take_choice, take_count, take_length, take_number, take_threads
 from ._progress import Progress, Reporter
+from ._read import PICTURES, Part
 from ._render import copy_image
 
 MAPS = tuple(lib.cw_map_name(n).decode() for n in range(c.cw_map.CW_MAP_COUNT))
@@ -135,6 +136,48 @@ class Baked:
     max_distance: float  # mm, that was bridged
     mean_distance: float
     mean_angle: float  # degrees between the normals of both surfaces
+
+
+def bake_pictures(
+    mesh: Mesh,
+    parts: Sequence[Part],
+    *,
+    size: int = 2048,
+    margin: int = 2,
+    reach: float | str = 0.0,
+    threads: int = 0,
+    progress: Progress = None,
+) -> dict[str, npt.NDArray[np.uint8]]:
+    """Carries the pictures of textured parts, as read_parts() gives them, over to a mesh from atlas() that has
+    normals. Returns (size, size, 4) uint8 for each use that some part has a picture of.
+
+    Options are those of bake_normals(). Pictures are PNG or JPEG; colours are sRGB. Texels that miss are white.
+    Raises Error: ARGUMENT, UNSUPPORTED for other pictures, FORMAT, NO_MEMORY, CANCELLED.
+    """
+    low, decoded = take_mesh("mesh", mesh), []
+    reporter = Reporter(progress)
+    desc = c.cw_bake_desc(
+        size=take_count("size", size, 16, 16384),
+        margin=take_count("margin", margin, 1, 64),
+        reach_mm=take_length("reach", reach, mesh),
+        threads=take_threads(threads),
+        progress=reporter.struct,
+    )
+    sources = (c.cw_bake_source * max(len(parts), 1))()
+    for source, part in zip(sources, parts):
+        source.mesh = pointer(take_mesh("the mesh of a part", part.mesh))
+        for use, data in (part.pictures or {}).items():
+            image = Owner(c.cw_image(), lib.cw_image_free)
+            bytes_ = (c_uint8 * len(data)).from_buffer_copy(data)
+            call(lib.cw_image_decode, bytes_, len(data), byref(image.struct))
+            source.pictures[PICTURES.index(use)] = pointer(image.struct)
+            decoded.append(image)
+    out = (c.cw_image * len(PICTURES))()
+    reporter.call(lib.cw_bake_pictures, byref(low), sources, len(parts), byref(desc), out, None)
+    baked = {use: copy_image(image) for use, image in zip(PICTURES, out) if image.pixels}
+    for image in out:
+        lib.cw_image_free(byref(image))
+    return baked
 
 
 def bake_normals(

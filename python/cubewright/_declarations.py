@@ -132,6 +132,15 @@ class cw_map(enum.IntEnum):
     CW_MAP_COUNT = 5
 
 
+class cw_picture_use(enum.IntEnum):
+    CW_PICTURE_COLOR = 0
+    CW_PICTURE_NORMAL = 1
+    CW_PICTURE_METALLIC_ROUGHNESS = 2
+    CW_PICTURE_OCCLUSION = 3
+    CW_PICTURE_EMISSIVE = 4
+    CW_PICTURE_USES = 5
+
+
 class cw_boolean_op(enum.IntEnum):
     CW_BOOLEAN_UNION = 0
     CW_BOOLEAN_DIFFERENCE = 1
@@ -851,6 +860,19 @@ cw_bake_facts._fields_ = [
     ("occlusion_mm", c_double),
     ("thickness_mm", c_double),
     ("curvature_max", c_double),
+]
+
+
+class cw_bake_source(Structure):
+    mesh: Any
+    pictures: Any
+    repeats: bool
+
+
+cw_bake_source._fields_ = [
+    ("mesh", POINTER(cw_mesh)),
+    ("pictures", POINTER(cw_image) * 5),
+    ("repeats", c_bool),
 ]
 
 
@@ -3667,11 +3689,13 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "cw_image_compare": (c_int, [POINTER(cw_image), POINTER(cw_image), c_int, POINTER(c_size_t), POINTER(cw_error)]),
     "cw_image_write": (c_int, [c_char_p, POINTER(cw_image), POINTER(cw_error)]),
     "cw_image_encode": (c_int, [POINTER(cw_image), c_bool, POINTER(POINTER(c_uint8)), POINTER(c_size_t), POINTER(cw_error)]),
+    "cw_image_decode": (c_int, [POINTER(c_uint8), c_size_t, POINTER(cw_image), POINTER(cw_error)]),
     "cw_bytes_free": (None, [POINTER(c_uint8)]),
     "cw_map_name": (c_char_p, [c_int]),
     "cw_bake_normals": (c_int, [POINTER(cw_mesh), POINTER(cw_mesh), POINTER(cw_bake_desc), POINTER(cw_image), POINTER(cw_bake_facts), POINTER(cw_error)]),
     "cw_bake_maps": (c_int, [POINTER(cw_mesh), POINTER(cw_mesh), POINTER(cw_bake_desc), POINTER(cw_image), POINTER(cw_bake_facts), POINTER(cw_error)]),
     "cw_bake_meshes": (c_int, [POINTER(POINTER(cw_mesh)), c_size_t, POINTER(cw_mesh), POINTER(cw_bake_desc), POINTER(cw_image), POINTER(cw_bake_facts), POINTER(cw_error)]),
+    "cw_bake_pictures": (c_int, [POINTER(cw_mesh), POINTER(cw_bake_source), c_size_t, POINTER(cw_bake_desc), POINTER(cw_image), POINTER(cw_bake_facts), POINTER(cw_error)]),
     "cw_mesh_boolean": (c_int, [POINTER(POINTER(cw_mesh)), c_size_t, POINTER(cw_boolean_desc), POINTER(cw_mesh), POINTER(cw_boolean_facts), POINTER(cw_error)]),
     "cw_view_name": (c_char_p, [c_size_t]),
     "cw_camera_fit": (c_int, [POINTER(cw_fit_desc), POINTER(cw_camera), POINTER(cw_error)]),

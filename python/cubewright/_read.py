@@ -189,6 +189,7 @@ class Part:
     pictures: dict[str, bytes] | None = None
 
 
+# In the order of cw_picture_use.
 PICTURES = ("color", "normal", "metallic_roughness", "occlusion", "emissive")
 
 

@@ -9,6 +9,7 @@
 #include "core/texture/gather_meshes.h"
 #include "core/texture/split_seams.h"
 #include "core/texture/tangents.h"
+#include "simplify/bake/bake_input.h"
 #include "simplify/bake/bake_state.h"
 #include "simplify/bake/texels.h"
 
@@ -25,7 +26,7 @@ enum {
 };
 
 /* Shares of the diagonal of the mesh's box. */
-static const double DEFAULT_REACH = 0.04, DEFAULT_RAY = 0.1, BIAS = 2e-4;
+static const double DEFAULT_RAY = 0.1, BIAS = 2e-4;
 
 /* A map, and the function that makes its texels. */
 static const struct map_kind {
@@ -82,6 +83,19 @@ static void put_texel(const pass *p, size_t at, const cwi_texel_frame *f,
     }
 }
 
+/* Interpolates the frame at a texel; its place is relative to the origin of the full surface. */
+static void find_frame(const pass *p, uint32_t triangle, uint32_t x, uint32_t y,
+                       cwi_texel_frame *f)
+{
+    const cwi_baking *b = p->b;
+    double weights[3];
+    cwi_texel_weights(cwi_texture_of(&b->mesh)->data, b->mesh.triangles + 3 * (size_t)triangle,
+                      p->size, x, y, weights);
+    cwi_texel_frame_find(&b->mesh, (const float(*)[4])b->tangents, triangle, weights, f);
+    for (int k = 0; k < 3; k++)
+        f->point[k] += b->shift[k];
+}
+
 static void bake_row(void *context, size_t y)
 {
     const pass *p = context;
@@ -96,7 +110,7 @@ static void bake_row(void *context, size_t y)
             put_texel(p, at, &f, NULL);
             continue;
         }
-        cwi_texel_frame_find(p->b, p->triangle[at], p->size, x, (uint32_t)y, &f);
+        find_frame(p, p->triangle[at], x, (uint32_t)y, &f);
         const double bound = (last_mm + cwi_distance(f.point, last)) * (1 + 1e-9);
         facts->texels++;
         if (!cwi_texel_hit_find(p->b, &f, bound, &hit)) {
@@ -138,7 +152,7 @@ static cw_status finish_image(const pass *p, int map, const cw_bake_desc *d, cw_
     cw_status st =
         KINDS[map].is_smoothed ? cwi_texels_smooth(p->triangle, p->size, texels, err) : CW_OK;
     if (st == CW_OK)
-        st = cwi_texels_spread(p->triangle, p->size, d->margin, texels, err);
+        st = cwi_texels_spread(p->triangle, p->size, d->margin, texels, 3, err);
     if (st == CW_OK)
         st = cw_image_alloc(image, p->size, p->size, err);
     if (st == CW_OK && d->deep)
@@ -206,7 +220,7 @@ static cw_status prepare(cwi_baking *b, const cw_mesh *mesh, const cw_mesh *full
         st = cwi_closest_build(b->full, &b->tree, err);
     if (st != CW_OK)
         return st;
-    b->reach = d->reach_mm > 0 ? d->reach_mm : DEFAULT_REACH * diagonal;
+    b->reach = d->reach_mm > 0 ? d->reach_mm : CWI_BAKE_REACH * diagonal;
     b->occlusion_mm = d->occlusion_mm > 0 ? d->occlusion_mm : DEFAULT_RAY * diagonal;
     b->thickness_mm = d->thickness_mm > 0 ? d->thickness_mm : DEFAULT_RAY * diagonal;
     b->curvature_max = d->curvature_max;
@@ -268,8 +282,17 @@ static cw_status check_settings(const cw_bake_desc *d, cw_error *err)
     return CW_OK;
 }
 
-static cw_status check_inputs(const cw_mesh *mesh, const cw_mesh *full, const cw_bake_desc *d,
-                              cw_error *err)
+cw_bake_desc cwi_bake_defaults(const cw_bake_desc *desc)
+{
+    cw_bake_desc d = desc ? *desc : (cw_bake_desc){0};
+    d.size = d.size ? d.size : DEFAULT_SIZE;
+    d.margin = d.margin ? d.margin : DEFAULT_MARGIN;
+    d.maps = d.maps ? d.maps : 1u << CW_MAP_NORMALS;
+    return d;
+}
+
+cw_status cwi_bake_check(const cw_mesh *mesh, const cw_mesh *full, const cw_bake_desc *d,
+                         cw_error *err)
 {
     cw_status st = check_settings(d, err);
     if (st == CW_OK)
@@ -294,14 +317,11 @@ cw_status cw_bake_maps(const cw_mesh *mesh, const cw_mesh *full, const cw_bake_d
 {
     CWI_REQUIRE(err, mesh, full, images);
     CWI_REQUIRE_VERSION(err, desc, 0);
-    cw_bake_desc d = desc ? *desc : (cw_bake_desc){0};
+    const cw_bake_desc d = cwi_bake_defaults(desc);
     cw_bake_facts found = {0};
     cwi_baking b = {0};
-    d.size = d.size ? d.size : DEFAULT_SIZE;
-    d.margin = d.margin ? d.margin : DEFAULT_MARGIN;
-    d.maps = d.maps ? d.maps : 1u << CW_MAP_NORMALS;
     memset(images, 0, CW_MAP_COUNT * sizeof *images);
-    cw_status st = check_inputs(mesh, full, &d, err);
+    cw_status st = cwi_bake_check(mesh, full, &d, err);
     if (st == CW_OK)
         st = prepare(&b, mesh, full, &d, err);
     if (st == CW_OK)

@@ -4,7 +4,7 @@
 
 #include <cubewright/bake.h>
 
-#include "core/geometry/bvh.h"
+#include "simplify/bake/bake_frame.h"
 
 /* Both surfaces. Places are relative to the origin of the full one. */
 typedef struct cwi_baking {
@@ -22,11 +22,6 @@ typedef struct cwi_baking {
     double curvature_max; /* 1 / mm: that is white */
 } cwi_baking;
 
-/* The frame that a viewer has at a texel, and its place on the mesh. Directions have the length 1. */
-typedef struct cwi_texel_frame {
-    double point[3], normal[3], tangent[3], bitangent[3];
-} cwi_texel_frame;
-
 /* The nearest point of the full surface that faces the same way. */
 typedef struct cwi_texel_hit {
     uint32_t triangle;
@@ -41,10 +36,6 @@ typedef void cwi_texel_shader(const cwi_baking *b, const cwi_texel_frame *frame,
 
 cwi_texel_shader cwi_shade_normal, cwi_shade_occlusion, cwi_shade_curvature,
     cwi_shade_thickness, cwi_shade_color;
-
-/* Interpolates the frame at a texel of a triangle of b->mesh. size: texels along each side */
-void cwi_texel_frame_find(const cwi_baking *b, uint32_t triangle, uint32_t size, uint32_t x,
-                          uint32_t y, cwi_texel_frame *frame);
 
 /* Finds the nearest point of the full surface that faces the same way as a frame. bound: mm in which one is
  * thought to be. Returns false where none is in reach. */

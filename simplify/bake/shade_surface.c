@@ -21,21 +21,10 @@ enum { SMOOTHINGS = 2 };
 void cwi_shade_normal(const cwi_baking *b, const cwi_texel_frame *f, const cwi_texel_hit *hit,
                       double color[3])
 {
-    double across[3], shares[3] = {0, 0, 1};
+    double shares[3] = {0, 0, 1};
     (void)b;
-    if (hit) {
-        cwi_cross(f->bitangent, f->normal, across);
-        const double volume = cwi_dot(f->tangent, across);
-        shares[0] = cwi_dot(hit->normal, across) / volume;
-        cwi_cross(f->normal, f->tangent, across);
-        shares[1] = cwi_dot(hit->normal, across) / volume;
-        cwi_cross(f->tangent, f->bitangent, across);
-        shares[2] = cwi_dot(hit->normal, across) / volume;
-        if (!(fabs(volume) > 1e-3) || !cwi_normalise(shares)) {
-            shares[0] = shares[1] = 0;
-            shares[2] = 1;
-        }
-    }
+    if (hit)
+        cwi_texel_share_normal(f, hit->normal, shares);
     for (int k = 0; k < 3; k++)
         color[k] = (shares[k] + 1) / 2;
 }

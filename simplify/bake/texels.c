@@ -70,18 +70,18 @@ void cwi_texels_find(const cw_mesh *mesh, uint32_t size, uint32_t *triangle)
 
 /* Gives a texel the mean of those around it that an earlier step filled; false where there are none. */
 static bool fill_texel(const uint8_t *step, uint32_t size, uint32_t x, uint32_t y, uint8_t now,
-                       const uint16_t *from, uint16_t *to)
+                       size_t channels, const uint16_t *from, uint16_t *to)
 {
-    unsigned sum[3] = {0}, count = 0;
+    unsigned sum[4] = {0}, count = 0;
     for (uint32_t j = y ? y - 1 : 0; j <= y + 1 && j < size; j++)
         for (uint32_t i = x ? x - 1 : 0; i <= x + 1 && i < size; i++) {
             const size_t at = (size_t)j * size + i;
-            for (size_t k = 0; step[at] < now && k < 3; k++)
-                sum[k] += from[3 * at + k];
+            for (size_t k = 0; step[at] < now && k < channels; k++)
+                sum[k] += from[channels * at + k];
             count += step[at] < now;
         }
-    for (size_t k = 0; count && k < 3; k++)
-        to[3 * ((size_t)y * size + x) + k] = (uint16_t)((sum[k] + count / 2) / count);
+    for (size_t k = 0; count && k < channels; k++)
+        to[channels * ((size_t)y * size + x) + k] = (uint16_t)((sum[k] + count / 2) / count);
     return count;
 }
 
@@ -96,7 +96,7 @@ static uint8_t *mark_filled(const uint32_t *triangle, uint32_t size)
 }
 
 cw_status cwi_texels_spread(const uint32_t *triangle, uint32_t size, uint32_t steps,
-                            uint16_t *texels, cw_error *err)
+                            uint16_t *texels, size_t channels, cw_error *err)
 {
     uint8_t *step = mark_filled(triangle, size); /* in which a texel was filled */
     if (!step)
@@ -105,7 +105,7 @@ cw_status cwi_texels_spread(const uint32_t *triangle, uint32_t size, uint32_t st
         for (uint32_t y = 0; y < size; y++)
             for (uint32_t x = 0; x < size; x++)
                 if (step[(size_t)y * size + x] == UNKNOWN &&
-                    fill_texel(step, size, x, y, (uint8_t)now, texels, texels))
+                    fill_texel(step, size, x, y, (uint8_t)now, channels, texels, texels))
                     step[(size_t)y * size + x] = (uint8_t)now;
     cwi_free(step);
     return CW_OK;
@@ -123,7 +123,7 @@ cw_status cwi_texels_smooth(const uint32_t *triangle, uint32_t size, uint16_t *t
     for (uint32_t y = 0; y < size && has_memory; y++)
         for (uint32_t x = 0; x < size; x++)
             if (step[(size_t)y * size + x] == FILLED)
-                fill_texel(step, size, x, y, 1, before, texels);
+                fill_texel(step, size, x, y, 1, 3, before, texels);
     cwi_free(step);
     cwi_free(before);
     return has_memory ? CW_OK : cwi_fail_memory(err);

@@ -222,6 +222,17 @@ class Coordinates(Case):
                 with self.assertRaises(ValueError):
                     cw.write(path, [cw.Part("low", low, pictures={"colour": b""})])
         self.assertRaises(ValueError, lambda: cw.bake_normals(low, low, size=8))
+        with tempfile.TemporaryDirectory() as folder:
+            png = Path(folder) / "red.png"
+            cw.write_png(png, np.full((8, 8, 4), (255, 0, 0, 255), np.uint8))
+            old = cw.Part("old", low, pictures={"color": png.read_bytes()})
+            try:
+                found = cw.bake_pictures(low, [old], size=64)
+            except cw.Error as error:
+                self.assertEqual(error.status, cw.Status.UNSUPPORTED)
+            else:
+                self.assertEqual(list(found), ["color"])
+                self.assertTrue((found["color"] == (255, 0, 0, 255)).all(axis=2).mean() > 0.3)
         with self.fails(cw.Status.ARGUMENT):
             cw.bake_normals(cw.extract(make_ball(), 0), low)
         with self.fails(cw.Status.CANCELLED):
