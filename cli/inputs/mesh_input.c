@@ -115,8 +115,8 @@ static double file_bytes(const char *path)
     return stat(path, &info) == 0 ? (double)info.st_size : 0;
 }
 
-static cw_status read_file(const char *path, const char *reader, const cli_input *input,
-                           bool parts, bool reference, cli_mesh *mesh, cw_error *err)
+static cw_status read_quietly(const char *path, const char *reader, const cli_input *input,
+                              bool parts, bool reference, cli_mesh *mesh, cw_error *err)
 {
     cw_mesh_read_desc desc = {
         .reader = reader,
@@ -132,9 +132,14 @@ static cw_status read_file(const char *path, const char *reader, const cli_input
         desc.claim.rule = CW_CLAIM_FILL;
     desc.progress = cli_progress(file_bytes(path) / 1e6, "MB");
     *mesh = (cli_mesh){.path = path};
-    cw_status st =
-        parts ? cw_parts_read(path, &desc, &mesh->parts, &mesh->part_count, &mesh->file, err)
-              : cw_mesh_read(path, &desc, &mesh->mesh, &mesh->file, err);
+    return parts ? cw_parts_read(path, &desc, &mesh->parts, &mesh->part_count, &mesh->file, err)
+                 : cw_mesh_read(path, &desc, &mesh->mesh, &mesh->file, err);
+}
+
+static cw_status read_file(const char *path, const char *reader, const cli_input *input,
+                           bool parts, bool reference, cli_mesh *mesh, cw_error *err)
+{
+    const cw_status st = read_quietly(path, reader, input, parts, reference, mesh, err);
     if (st == CW_OK)
         say_what_was_found(mesh);
     return st;
@@ -156,6 +161,12 @@ cw_status cli_read_parts(const char *path, const char *reader, const cli_input *
                          cli_mesh *mesh, cw_error *err)
 {
     return read_file(path, reader, input, true, false, mesh, err);
+}
+
+cw_status cli_read_parts_again(const cli_mesh *whole, bool is_reference, const char *reader,
+                               const cli_input *input, cli_mesh *parts, cw_error *err)
+{
+    return read_quietly(whole->path, reader, input, true, is_reference, parts, err);
 }
 
 cw_status cli_orient_mesh(cli_mesh *m, int threads, cw_error *err)

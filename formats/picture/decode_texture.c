@@ -40,8 +40,9 @@ static cw_status check_facts(const cwi_picture_facts *f, cw_error *err)
     if (!is_sane)
         return cwi_fail(err, CW_ERR_BACKEND, "libpng's answer is not valid");
     if (f->columns > MAX_TEXELS || f->rows > MAX_TEXELS)
-        return cwi_fail(err, CW_ERR_LIMIT, "a picture of %u x %u texels; at most %d are decoded",
-                        f->columns, f->rows, MAX_TEXELS);
+        return cwi_fail(err, CW_ERR_LIMIT,
+                        "a picture of %u x %u texels; at most %d are decoded", f->columns,
+                        f->rows, MAX_TEXELS);
     if (f->has_palette)
         return cwi_fail(err, CW_ERR_UNSUPPORTED,
                         "a picture with a palette of colours is not decoded: save it as RGB");
@@ -74,7 +75,8 @@ static cw_status read_rows(cwi_planes *planes, const cwi_picture_facts *f, cw_im
     const size_t row = (size_t)f->columns * f->samples * cw_type_size(f->type),
                  most = (4U << 20) / row + 1;
     uint8_t *rows = cwi_alloc_array(most, row);
-    cw_status st = rows ? cw_image_alloc(image, f->columns, f->rows, err) : cwi_fail_memory(err);
+    cw_status st =
+        rows ? cw_image_alloc(image, f->columns, f->rows, err) : cwi_fail_memory(err);
     for (size_t y = 0; y < f->rows && st == CW_OK; y += most) {
         const size_t count = f->rows - y < most ? f->rows - y : most;
         st = cwi_planes_read(planes, 0, y, count, row, rows, err);

@@ -60,7 +60,8 @@ typedef struct cw_appearance {
     uint32_t views, size;   /* those of the settings, or their defaults */
     uint32_t worst;         /* the view with the largest rmse */
     cw_look_difference all; /* over all views */
-    cw_look_difference view[CW_APPEARANCE_MAX_VIEWS];
+    cw_look_difference view[CW_APPEARANCE_MAX_VIEWS];  /* of each view */
+    cw_appearance_view place[CW_APPEARANCE_MAX_VIEWS]; /* of each view */
 } cw_appearance;
 
 /* Measures how alike two surfaces look: both are drawn from the same places, spread evenly over a

@@ -2,6 +2,7 @@
 #ifndef CUBEWRIGHT_CHECK_H
 #define CUBEWRIGHT_CHECK_H
 
+#include <cubewright/appearance.h>
 #include <cubewright/distance.h>
 #include <cubewright/print.h>
 #include <cubewright/quality.h>
@@ -44,6 +45,10 @@ typedef struct cw_findings {
     double tolerance_mm;    /* for the distances; 0: no limit, distances are only reported */
     bool has_normals;       /* the mesh has normals */
     const char *file_fault; /* cw_mesh_file.fault of the file; NULL or "": none */
+    const cw_appearance *looks;      /* cw_appearance_measure() beside the reference, and */
+    const cw_appearance *bare_looks; /* the same without maps, if there are some */
+    double max_delta_e;              /* limit of their mean CIEDE2000; 0: none */
+    double min_psnr_db;              /* limit of their PSNR; 0: none */
 } cw_findings;
 
 /* Grades, from the worst to the best. */

@@ -48,6 +48,7 @@ class Appearance:
     without_maps: LookDifference  # the same without the maps of the second surface
     views: tuple[LookDifference, ...]
     views_without_maps: tuple[LookDifference, ...]
+    places: tuple[tuple[float, float], ...]  # of each view: azimuth (0: the front; 90: the left), elevation
     worst: int
     size: int  # pixels along each side of a view
 
@@ -95,6 +96,7 @@ def appearance(
         without_maps=read_difference(without_maps.all),
         views=tuple(read_difference(d) for d in with_maps.view[: with_maps.views]),
         views_without_maps=tuple(read_difference(d) for d in without_maps.view[: without_maps.views]),
+        places=tuple((p.azimuth_deg, p.elevation_deg) for p in with_maps.place[: with_maps.views]),
         worst=with_maps.worst,
         size=with_maps.size,
     )

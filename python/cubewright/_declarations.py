@@ -837,6 +837,7 @@ class cw_appearance(Structure):
     worst: int
     all: Any
     view: Any
+    place: Any
 
 
 cw_appearance._fields_ = [
@@ -845,6 +846,7 @@ cw_appearance._fields_ = [
     ("worst", c_uint32),
     ("all", cw_look_difference),
     ("view", cw_look_difference * 64),
+    ("place", cw_appearance_view * 64),
 ]
 
 
@@ -1515,6 +1517,10 @@ class cw_findings(Structure):
     tolerance_mm: float
     has_normals: bool
     file_fault: bytes | None
+    looks: Any
+    bare_looks: Any
+    max_delta_e: float
+    min_psnr_db: float
 
 
 cw_findings._fields_ = [
@@ -1533,6 +1539,10 @@ cw_findings._fields_ = [
     ("tolerance_mm", c_double),
     ("has_normals", c_bool),
     ("file_fault", c_char_p),
+    ("looks", POINTER(cw_appearance)),
+    ("bare_looks", POINTER(cw_appearance)),
+    ("max_delta_e", c_double),
+    ("min_psnr_db", c_double),
 ]
 
 
@@ -3782,6 +3792,7 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "cw_label_table_beside": (c_int, [c_char_p, POINTER(POINTER(c_char)), POINTER(cw_error)]),
     "cw_raw_layout_parse": (c_int, [c_char_p, POINTER(cw_raw_layout), POINTER(cw_error)]),
     "cw_mesh_read": (c_int, [c_char_p, POINTER(cw_mesh_read_desc), POINTER(cw_mesh), POINTER(cw_mesh_file), POINTER(cw_error)]),
+    "cw_texture_decode": (c_int, [POINTER(cw_texture), POINTER(cw_mesh_read_desc), POINTER(cw_image), POINTER(cw_error)]),
     "cw_parts_read": (c_int, [c_char_p, POINTER(cw_mesh_read_desc), POINTER(POINTER(cw_part)), POINTER(c_size_t), POINTER(cw_mesh_file), POINTER(cw_error)]),
     "cw_parts_free": (None, [POINTER(cw_part), c_size_t]),
     "cw_volume_write": (c_int, [c_char_p, POINTER(cw_volume), POINTER(cw_write_desc), POINTER(cw_error)]),

@@ -157,9 +157,10 @@ static cw_status compare(measuring *m, const cw_camera *camera, bool without_map
     return st;
 }
 
-static void put_view(const cwi_look_sums *sums, uint32_t n, cwi_look_sums *all,
-                     cw_appearance *out)
+static void put_view(const cwi_look_sums *sums, const cw_appearance_view *view, uint32_t n,
+                     cwi_look_sums *all, cw_appearance *out)
 {
+    out->place[n] = *view;
     cwi_look_figures(sums, &out->view[n]);
     cwi_look_sums_add(all, sums);
     cwi_look_figures(all, &out->all);
@@ -185,11 +186,11 @@ static cw_status measure(measuring *m, cw_appearance *with_maps, cw_appearance *
         if (st == CW_OK)
             st = compare(m, &view.camera, false, &sums, err);
         if (st == CW_OK)
-            put_view(&sums, n, &all[0], with_maps);
+            put_view(&sums, &view, n, &all[0], with_maps);
         if (st == CW_OK && without_maps && m->surface.has_maps)
             st = compare(m, &view.camera, true, &sums, err);
         if (st == CW_OK && without_maps)
-            put_view(&sums, n, &all[1], without_maps);
+            put_view(&sums, &view, n, &all[1], without_maps);
     }
     return st == CW_OK ? cwi_progress(&m->d.progress, "comparing looks", 1, err) : st;
 }

@@ -273,12 +273,17 @@ static void textures_that_cannot_be_decoded_are_told(void **state)
     static const uint8_t jpeg[] = {0xff, 0xd8, 0xff, 0xe0}, other[] = "RIFF....WEBP";
     cw_image image;
     cw_error err = {0};
-    const png palette = {
-        .bits = 1, .color = 3, .channels = 1, .colors = 2, .palette = colors, .sample = sample_1};
+    const png palette = {.bits = 1,
+                         .color = 3,
+                         .channels = 1,
+                         .colors = 2,
+                         .palette = colors,
+                         .sample = sample_1};
     put_png("a.png", &palette);
     assert_int_equal(decode("a.png", &image, &err), CW_ERR_UNSUPPORTED);
     assert_non_null(strstr(err.message, "palette"));
-    const cw_texture none = {0}, of_jpeg = {jpeg, sizeof jpeg}, of_other = {other, sizeof other};
+    const cw_texture none = {0}, of_jpeg = {jpeg, sizeof jpeg},
+                     of_other = {other, sizeof other};
     assert_fails(cw_texture_decode(&none, NULL, &image, &err), CW_ERR_ARGUMENT, "no picture",
                  err);
     assert_fails(cw_texture_decode(&of_jpeg, NULL, &image, &err), CW_ERR_UNSUPPORTED, "JPEG",
@@ -301,8 +306,8 @@ static void textures_that_cannot_be_decoded_are_told(void **state)
         char *whole = test_file_read(test_path("a.png"), &size);
         const cw_texture texture = {(const uint8_t *)whole, size};
         cwi_alloc_fail_after(n);
-        const cw_status st = cw_texture_decode(
-            &texture, &(cw_mesh_read_desc){.no_sandbox = true}, &image, &err);
+        const cw_status st =
+            cw_texture_decode(&texture, &(cw_mesh_read_desc){.no_sandbox = true}, &image, &err);
         free(whole);
         if (!cwi_alloc_fail_after(-1)) {
             assert_ok(st, err);
