@@ -10,6 +10,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <sys/stat.h>
 
 double cli_check_least_mm3(const cli_check_run *s)
 {
@@ -254,6 +255,13 @@ static cw_status measure_print(cli_check_run *s, cw_error *err)
     return in_mesh(s, st, err);
 }
 
+/* Returns the bytes of a file; 0: it is none that can be told. */
+static size_t find_file_bytes(const char *path)
+{
+    struct stat info;
+    return stat(path, &info) == 0 && S_ISREG(info.st_mode) ? (size_t)info.st_size : 0;
+}
+
 /* Without triangles there is nothing to measure from or to: the verdict says so. */
 cw_status cli_check_measure(cli_check_run *s, cw_error *err)
 {
@@ -271,6 +279,7 @@ cw_status cli_check_measure(cli_check_run *s, cw_error *err)
     s->findings.tolerance_mm = tolerance_mm(s);
     s->findings.has_normals = mesh->normals;
     s->findings.file_fault = s->mesh.file.fault;
+    s->findings.file_bytes = find_file_bytes(s->mesh.path);
     cw_status st = measure_mesh(s, err);
     if (st == CW_OK && mesh->triangle_count)
         st = ask_cgal(s, err);

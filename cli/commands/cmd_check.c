@@ -20,11 +20,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const char *const profiles[] = {"basic", "print", "web", "fem"};
+static const char *const profiles[] = {"basic", "print", "web", "fem", "game", "mobile"};
 
 static const cli_option options[] = {
-    {"profile", 'p', CLI_CHOICE, "basic/print/web/fem", "What the mesh must be fit for (basic)",
-     offsetof(cli_check_args, profile)},
+    {"profile", 'p', CLI_CHOICE, "basic/print/web/fem/game/mobile",
+     "What the mesh must be fit for (basic)", offsetof(cli_check_args, profile)},
     {"deep", 0, CLI_FLAG, NULL,
      "Look for self-intersections in every profile, and ask CGAL, too (off)",
      offsetof(cli_check_args, deep)},

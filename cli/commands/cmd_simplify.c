@@ -180,7 +180,7 @@ static cw_status name_outputs(cli_mesh_run *r, cw_error *err)
     const cli_mesh_args *args = r->args;
     const cli_counts *lod = &args_of(r)->lod;
     return lod->count ? cli_name_detail_levels(&r->outputs, args->output, args->written.format,
-                                               args->common.inputs[0], lod, err)
+                                               args->common.inputs[0], lod, false, err)
                       : cli_name_output(&r->outputs, args->output, args->common.inputs[0], err);
 }
 

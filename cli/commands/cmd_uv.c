@@ -1,4 +1,5 @@
 /* The command uv: texture coordinates, one square for all parts of a file, and a normal map. */
+#include "cli/assets/texture_options.h"
 #include "cli/commands/command_rows.h"
 #include "cli/commands/mesh_command.h"
 #include "cli/framework/console.h"
@@ -7,27 +8,20 @@
 #include "core/mesh/mesh.h"
 #include "core/mesh/mesh_attributes.h"
 
-#include <cubewright/atlas.h>
-#include <cubewright/bake.h>
-
-#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
 typedef struct uv_args {
     cli_mesh_args mesh;
-    size_t atlas, margin;
-    cli_number density;
-    cli_length reach;
+    cli_texture_args texture;
 } uv_args;
 
 typedef struct uv_state {
     cw_atlas_facts facts;
-    cli_mesh full; /* of --bake */
-    double reach_mm;
+    cli_mesh full;   /* of --bake */
+    double reach_mm; /* 0: the default */
     cw_bake_facts baked;
-    cw_textures textures;
-    uint8_t *png; /* of textures; owned */
+    cli_maps maps;
 } uv_state;
 
 static const uv_args *args_of(const cli_mesh_run *r)
@@ -35,26 +29,21 @@ static const uv_args *args_of(const cli_mesh_run *r)
     return (const uv_args *)r->args;
 }
 
-/* Of --reach, as a share of the box's diagonal. */
-static const double DEFAULT_REACH = 0.04;
-
-static const uv_args defaults = {.atlas = 2048, .margin = 2};
+static const uv_args defaults = {.texture = CLI_TEXTURE_DEFAULTS};
 
 static const cli_option options[] = {
     CLI_MESH_OUTPUT(""),
     CLI_HEADED("Texture"),
-    {"atlas", 0, CLI_COUNT, "N", "Texels along each side of the texture (2048)",
-     offsetof(uv_args, atlas)},
-    {"margin", 0, CLI_COUNT, "N", "Texels that stay free around each chart (2)",
-     offsetof(uv_args, margin)},
-    {"texel-density", 0, CLI_NUMBER, "D", "Texels for each mm (as many as fit)",
-     offsetof(uv_args, density)},
-    CLI_HEADED("Normal map"),
+    CLI_ATLAS_OPTIONS(offsetof(uv_args, texture)),
+    CLI_HEADED("Maps"),
     {"bake", 0, CLI_TEXT, "MESH",
-     "Bake the normals of this mesh, which has more triangles, into a normal map of the output (none)",
+     "Bake the surface of this mesh, which has more triangles, into maps of the output (none)",
      offsetof(cli_mesh_args, source), CLI_VALUES_MESH},
+    {"maps", 0, CLI_TEXT, "NAME[,NAME...]", "Maps that --bake makes: normals (normals)",
+     offsetof(uv_args, texture) + offsetof(cli_texture_args, maps)},
     {"reach", 0, CLI_LENGTH, "L",
-     "How far the mesh of --bake may be (4% of the box's diagonal)", offsetof(uv_args, reach)},
+     "How far the mesh of --bake may be (4% of the box's diagonal)",
+     offsetof(uv_args, texture) + offsetof(cli_texture_args, reach)},
     CLI_HEADED("Parts"),
     CLI_MESH_MERGE,
     CLI_MESH_ORIENT,
@@ -63,7 +52,7 @@ static const cli_option options[] = {
 
 static const cli_rule rules[] = {
     {NULL, CLI_NEEDS, "output"},
-    {"reach", CLI_NEEDS, "bake"},
+    {"maps reach", CLI_NEEDS, "bake"},
     CLI_COMPRESS_RULES,
 };
 
@@ -71,13 +60,7 @@ static const cli_rule rules[] = {
 
 static void put_params(cli_json *j, const cli_mesh_run *r, const cli_made *made)
 {
-    const uv_args *args = args_of(r);
-    cli_json_count(j, "atlas", args->atlas);
-    cli_json_count(j, "margin", args->margin);
-    if (args->density.given)
-        cli_json_number(j, "texels_per_mm", args->density.value);
-    if (args->mesh.source)
-        cli_json_number(j, "reach_mm", ((const uv_state *)r->state)->reach_mm);
+    cli_json_texture(j, &args_of(r)->texture);
     cli_json_bool(j, "merge", r->args->merge);
     cli_json_bool(j, "orient", r->args->orient);
     cli_json_count(j, "merged_vertices", r->pieces.merged);
@@ -87,59 +70,38 @@ static void put_params(cli_json *j, const cli_mesh_run *r, const cli_made *made)
 static void put_facts(cli_json *j, const cli_mesh_run *r)
 {
     const uv_state *s = r->state;
-    const cw_atlas_facts *f = &s->facts;
     if (!r->is_made)
         return;
     if (r->args->source)
         cli_json_mesh_file(j, "full", &s->full);
-    cli_json_open(j, "atlas", '{');
-    cli_json_count(j, "charts", f->charts);
-    cli_json_count(j, "seams", f->seams);
-    cli_json_count(j, "vertices", f->vertices);
-    cli_json_number(j, "texels_per_mm", f->texels_per_mm);
-    cli_json_number(j, "stretch", f->stretch);
-    cli_json_number(j, "coverage", f->coverage);
-    cli_json_count(j, "flipped", f->flipped);
-    cli_json_close(j, '}');
-    if (!r->args->source)
-        return;
-    cli_json_open(j, "normal_map", '{');
-    cli_json_count(j, "texels", s->baked.texels);
-    cli_json_count(j, "missed", s->baked.missed);
-    cli_json_number(j, "max_mm", s->baked.max_mm);
-    cli_json_number(j, "mean_mm", s->baked.mean_mm);
-    cli_json_number(j, "mean_deg", s->baked.mean_deg);
-    cli_json_close(j, '}');
+    cli_json_atlas(j, &s->facts);
+    if (r->args->source)
+        cli_json_maps(j, &s->baked);
 }
 
-/* Says how the normal map came out. */
+/* Says how the maps came out. */
 static void report_bake(cli_mesh_run *r)
 {
     const uv_state *s = r->state;
     const size_t used = strlen(r->found);
-    const double missed = 100 * (double)s->baked.missed / (double)s->baked.texels;
-    snprintf(
-        r->found + used, sizeof r->found - used,
-        "; normal map of %s, at most %.3g mm away, mean %.2g mm; %.2g %% of the texels missed",
-        s->full.path, s->baked.max_mm, s->baked.mean_mm, missed);
-    if (missed > 1)
+    char text[CLI_TEXTURE_TEXT];
+    const double missed = cli_find_missed(&s->baked);
+    cli_maps_text(&s->baked, s->full.path, text);
+    snprintf(r->found + used, sizeof r->found - used, "; %s", text);
+    if (missed > 0)
         cli_report_warn(
             &r->report,
             "%.2g %% of the texels found nothing within --reach %.3g mm of %s that faces "
             "the same way: they are flat",
-            missed, s->reach_mm, s->full.path);
+            missed, s->baked.reach_mm, s->full.path);
 }
 
 static cw_status report_facts(cli_mesh_run *r, cw_error *err)
 {
     const cw_atlas_facts *f = &((const uv_state *)r->state)->facts;
-    snprintf(
-        r->found, sizeof r->found,
-        "; %s chart%s, %s edges of seams, %s vertices with one coordinate each; %u x %u texels, "
-        "%.0f %% covered, %.3g for a mm; stretch %.3f",
-        cli_count(f->charts), f->charts == 1 ? "" : "s", cli_count(f->seams),
-        cli_count(f->vertices), f->size, f->size, 100 * f->coverage, f->texels_per_mm,
-        f->stretch);
+    char text[CLI_TEXTURE_TEXT];
+    cli_atlas_text(f, text);
+    snprintf(r->found, sizeof r->found, "; %s", text);
     if (r->args->source)
         report_bake(r);
     if (f->flipped)
@@ -149,24 +111,12 @@ static cw_status report_facts(cli_mesh_run *r, cw_error *err)
     return CW_OK;
 }
 
-/* --- what is asked for -------------------------------------------------------------------- */
-
 static cw_status check_values(cli_mesh_run *r, cw_error *err)
 {
-    const uv_args *args = args_of(r);
-    if (args->atlas < 64 || args->atlas > CW_ATLAS_MAX_SIZE)
-        return cwi_fail(err, CW_ERR_ARGUMENT, "--atlas %zu: expected 64 to %u", args->atlas,
-                        CW_ATLAS_MAX_SIZE);
-    if (args->margin < 1 || args->margin > 64)
-        return cwi_fail(err, CW_ERR_ARGUMENT, "--margin %zu: expected 1 to 64", args->margin);
-    const cw_format *format = cw_mesh_format(args->mesh.output, args->mesh.written.format);
-    if (args->mesh.source && format && !(format->keeps & CW_KEEPS_PICTURES))
-        return cwi_fail(err, CW_ERR_ARGUMENT,
-                        "%s holds no normal map; --bake is for .glb and .gltf", format->name);
-    if (args->density.given && !(args->density.value > 0))
-        return cwi_fail(err, CW_ERR_ARGUMENT, "--texel-density %g: expected more than 0",
-                        args->density.value);
-    return CW_OK;
+    cli_texture_args texture = args_of(r)->texture;
+    if (r->args->source && !texture.maps)
+        texture.maps = "normals";
+    return cli_check_texture(&texture, r->args->output, r->args->written.format, err);
 }
 
 /* --- work --------------------------------------------------------------------------------- */
@@ -227,11 +177,8 @@ static cw_status read_full(cli_mesh_run *r, cw_error *err)
 static cw_status resolve_reach(cli_mesh_run *r, cw_error *err)
 {
     uv_state *s = r->state;
-    cw_status st =
-        cli_find_length(&r->pieces, "--reach", &args_of(r)->reach, &s->reach_mm, err);
-    if (st == CW_OK && !(s->reach_mm > 0))
-        s->reach_mm = DEFAULT_REACH * r->pieces.diagonal_mm;
-    return st;
+    return cli_find_length(&r->pieces, "--reach", &args_of(r)->texture.reach, &s->reach_mm,
+                           err);
 }
 
 /* Joins the finished pieces, with their normals and coordinates alone. */
@@ -249,45 +196,40 @@ static cw_status join_finished(cli_pieces *p, cw_mesh *all, cw_error *err)
     return st;
 }
 
-/* Bakes the normal map of all pieces. Normals that the full mesh lacks are made once its corners are
+/* Bakes the maps of all pieces. Normals that the full mesh lacks are made once its corners are
  * joined. */
 static cw_status bake(cli_mesh_run *r, cw_error *err)
 {
-    const uv_args *args = args_of(r);
     uv_state *s = r->state;
     cw_mesh all = {0};
-    cw_image image = {0};
-    const cw_bake_desc desc = {
-        .size = (uint32_t)args->atlas,
-        .margin = (uint32_t)args->margin,
-        .reach_mm = s->reach_mm,
-        .threads = r->threads,
-        .progress = cli_progress((double)(args->atlas * args->atlas) / 1e6, "Mtexel")};
+    cw_image images[CW_MAP_COUNT] = {{0}};
+    cw_bake_desc desc = cli_bake_desc(&args_of(r)->texture, s->reach_mm);
+    desc.size = s->facts.size;
+    desc.margin = s->facts.margin;
+    desc.threads = r->threads;
+    desc.progress = cli_progress((double)desc.size * desc.size / 1e6, "Mtexel");
     cw_status st = join_finished(&r->pieces, &all, err);
     if (st == CW_OK && !s->full.mesh.normals)
         st = cw_mesh_weld(&s->full.mesh, NULL, err);
     if (st == CW_OK)
-        st = cw_bake_normals(&all, &s->full.mesh, &desc, &image, &s->baked, err);
+        st = cw_bake_normals(&all, &s->full.mesh, &desc, &images[CW_MAP_NORMALS], &s->baked,
+                             err);
     if (st == CW_OK)
-        st = cw_image_encode(&image, false, &s->png, &s->textures.normal.size, err);
-    s->textures.normal.bytes = s->png;
-    r->pieces.textures = &s->textures;
-    cw_image_free(&image);
+        st = cli_encode_maps(images, &s->maps, err);
+    r->pieces.textures = &s->maps.textures;
+    for (int m = 0; m < CW_MAP_COUNT; m++)
+        cw_image_free(&images[m]);
     cw_mesh_free(&all);
     return st;
 }
 
 static cw_status lay_flat(cli_mesh_run *r, cw_error *err)
 {
-    const uv_args *args = args_of(r);
     uv_state *s = r->state;
     cw_mesh all = {0};
-    const cw_atlas_desc desc = {
-        .size = (uint32_t)args->atlas,
-        .margin = (uint32_t)args->margin,
-        .texels_per_mm = args->density.given ? args->density.value : 0,
-        .threads = r->threads,
-        .progress = cli_progress((double)r->pieces.triangles / 1e6, "Mtriangle")};
+    cw_atlas_desc desc = cli_atlas_desc(&args_of(r)->texture);
+    desc.threads = r->threads;
+    desc.progress = cli_progress((double)r->pieces.triangles / 1e6, "Mtriangle");
     cw_status st = join_pieces(&r->pieces, &all, err);
     if (st == CW_OK)
         st = cw_mesh_atlas(&all, &desc, &s->facts, err);
@@ -313,7 +255,7 @@ static cw_status run_uv(void *args, cw_error *err)
     uv_state state = {0};
     const cw_status st = cli_run_mesh_command(&uv, args, &state, 1, err);
     cli_free_mesh(&state.full);
-    cw_bytes_free(state.png);
+    cli_free_maps(&state.maps);
     return st;
 }
 

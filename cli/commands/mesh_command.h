@@ -68,7 +68,7 @@ typedef struct cli_mesh_run {
     double promised_mm; /* the largest distance to the input; 0: none is promised */
     const char *blamed; /* the file that an error of work() is about; NULL: the input */
     bool is_made;       /* work() is done */
-    char found[320];    /* for the line */
+    char found[640];    /* for the line */
     cli_outputs
         outputs; /* one, unless name_outputs() names others; or none, for a report alone */
     cli_report report;

@@ -20,7 +20,11 @@
 
 enum { DEFAULT_FPS = 10 };
 
-static const cli_extract_args defaults = {.check = true, .measure = true};
+static const cli_extract_args defaults = {.compress.kind = -1,
+                                          .texture = CLI_TEXTURE_DEFAULTS,
+                                          .pivot = -1,
+                                          .check = true,
+                                          .measure = true};
 
 static const cli_option options[] = {
     {"output", 'o', CLI_TEXT, "FILE",
@@ -105,9 +109,9 @@ static const cli_option options[] = {
     {"accel", 0, CLI_CHOICE, "octree/none",
      "Octree that several isovalues share; the result is the same (octree)",
      offsetof(cli_extract_args, accel)},
-    {"profile", 'p', CLI_CHOICE, "none/print",
-     "Make what a print needs: closed, the largest component or those of --min-volume or --largest; "
-     "and check it as 'check' does (none)",
+    {"profile", 'p', CLI_CHOICE, "none/print/" CLI_ASSET_CHOICES,
+     "Make what a print needs, and check it as 'check' does; or what is drawn: levels of detail with "
+     "texture coordinates and a normal map, within the budget (none)",
      offsetof(cli_extract_args, profile)},
     CLI_PRINTER_OPTIONS(cli_extract_args),
     CLI_COLOR_OPTIONS(cli_extract_args),
@@ -127,6 +131,16 @@ static const cli_option options[] = {
      "Measure the error of --simplify, --lod and --smooth, which takes a while (on; --no-measure)",
      offsetof(cli_extract_args, measure)},
     CLI_FORCE_OPTION(cli_extract_args, common),
+    CLI_HEADED("Texture"),
+    {"uv", 0, CLI_FLAG, NULL, "Lay the surface flat in a square: texture coordinates (off)",
+     offsetof(cli_extract_args, texture) + offsetof(cli_texture_args, uv)},
+    CLI_ATLAS_OPTIONS(offsetof(cli_extract_args, texture)),
+    {"maps", 0, CLI_TEXT, "NAME[,NAME...]",
+     "Maps of the surface before --simplify or --lod to bake: normals (none)",
+     offsetof(cli_extract_args, texture) + offsetof(cli_texture_args, maps)},
+    {"pivot", 0, CLI_CHOICE, "file/base/centre",
+     "Move to 0,0,0 the middle of the box, or that of its lower side (the volume's zero stays)",
+     offsetof(cli_extract_args, pivot)},
     CLI_HEADED("Only what cameras see"),
     {"camera", 0, CLI_TEXT, "FILE[,FILE...]",
      "Keep only the detail that these cameras need: .json files of 'render', or the text of "
@@ -208,7 +222,7 @@ static const cli_rule rules[] = {
     {"names smooth-labels table shared-faces per-label require-labels", CLI_NEEDS, "labels"},
     {"labels", CLI_EXCLUDES,
      "iso inside topology placement snap profile=print max-error pixel-error shading size no-measure fps "
-     "steps animate pvd prove-crop component=mag resample denoise remove-table mask mask-open mask-close"},
+     "steps animate pvd prove-crop pivot=base pivot=centre component=mag resample denoise remove-table mask mask-open mask-close"},
     {"per-label", CLI_NEEDS, "simplify"},
     {"per-label", CLI_EXCLUDES, "shared-faces"},
     {"lod", CLI_EXCLUDES,
@@ -223,6 +237,13 @@ static const cli_rule rules[] = {
     {"profile=print", CLI_EXCLUDES, "open cull lod animate no-check"},
     {"fps", CLI_NEEDS, "animate"},
     {"pvd", CLI_EXCLUDES, "animate"},
+    {"maps atlas margin texel-density", CLI_NEEDS,
+     "uv profile=game profile=web profile=mobile"},
+    {"maps", CLI_NEEDS,
+     "simplify lod max-error pixel-error profile=game profile=web profile=mobile"},
+    {"profile=game profile=web profile=mobile", CLI_EXCLUDES,
+     "labels open cull animate steps pvd snap part parts manifest"},
+    {"uv", CLI_EXCLUDES, "animate"},
     {"prove-crop", CLI_NEEDS, "crop"},
     {"prove-crop", CLI_EXCLUDES,
      "preview coarsen snap resample denoise remove-table mask mask-open mask-close"},
@@ -310,10 +331,12 @@ static cw_status make_surface(cli_extract_run *s, const cli_moment *moment, size
     if (st == CW_OK)
         st = cli_extract_prove_crop(s, moment, made, err);
     if (st == CW_OK)
-        st = s->args->animate
-                 ? cli_deliver_step(&s->output.report, &how, &mesh, counts->border_loops,
-                                    s->output.start, err)
-                 : deliver_level(s, n, &(cw_part){.mesh = &mesh}, 1, counts->border_loops, err);
+        st = cli_move_to_pivot(s->args->pivot, &mesh, 1, made->pivot, err);
+    const cw_part part = {.mesh = &mesh, .textures = &s->output.maps.textures};
+    if (st == CW_OK)
+        st = s->args->animate ? cli_deliver_step(&s->output.report, &how, &mesh,
+                                                 counts->border_loops, s->output.start, err)
+                              : deliver_level(s, n, &part, 1, counts->border_loops, err);
     if (st == CW_OK)
         st = cli_extract_judge_print(s, made, &mesh, err);
     if (s->args->animate && (st == CW_OK || st == CW_ERR_EMPTY))
@@ -321,6 +344,7 @@ static cw_status make_surface(cli_extract_run *s, const cli_moment *moment, size
     if (s->input.extractor)
         cw_extractor_recycle(s->input.extractor, &mesh);
     cw_mesh_free(&mesh);
+    cli_free_maps(&s->output.maps);
     return finish_surface(s, moment, made, st, err);
 }
 
@@ -528,6 +552,7 @@ static cw_status run_extract(void *p, cw_error *err)
                          .iso = &args->iso,
                          .coloring.args = &args->color,
                          .output.start = cli_seconds()};
+    cli_extract_fill_profile(args);
     if (cw_team_is_started() && !args->part) /* else each rank is a worker */
         return cli_extract_ranks(args, err);
     if (args->part || args->manifest || args->parts)
@@ -553,6 +578,7 @@ static cw_status run_extract(void *p, cw_error *err)
     cw_extractor_free(s.input.extractor);
     cli_frames_free(&s.output.frames);
     cli_free_coloring(&s.coloring);
+    cli_free_maps(&s.output.maps);
     cli_free_volume(&s.input.volume);
     cli_free_outputs(&s.output.files);
     cli_free_series(&s.input.series);

@@ -17,6 +17,26 @@ cw_write_desc cli_extract_write_desc(const cli_extract_args *args)
                            .bits = (int)args->compress.bits};
 }
 
+const cli_asset *cli_extract_asset(const cli_extract_args *args)
+{
+    return cli_find_asset(args->profile - CLI_PROFILE_ASSETS);
+}
+
+void cli_extract_fill_profile(cli_extract_args *args)
+{
+    const cli_asset *asset = cli_extract_asset(args);
+    if (args->compress.kind < 0) /* none was given */
+        args->compress.kind = asset ? asset->compression : CW_COMPRESS_NONE;
+    if (args->pivot < 0)
+        args->pivot = asset ? CLI_PIVOT_BASE : CLI_PIVOT_FILE;
+    if (!asset)
+        return;
+    if (!cli_extract_is_simplified(args))
+        cli_fill_levels(asset, &args->lod);
+    cli_fill_texture(asset, &args->texture, &args->handles);
+    args->fill_voids = true;
+}
+
 /* The report is an output too: none is written when it is an input or a mesh. */
 static cw_status check_report(cli_extract_run *s, const char *const *inputs, size_t count,
                               cw_error *err)
@@ -58,7 +78,8 @@ cw_status cli_extract_check_outputs(cli_extract_run *s, cw_error *err)
     cw_status st =
         args->lod.count
             ? cli_name_detail_levels(&s->output.files, args->output, args->format,
-                                     args->common.inputs[0], &args->lod, err)
+                                     args->common.inputs[0], &args->lod,
+                                     cli_extract_asset(args), err)
             : cli_name_outputs(&s->output.files, args->output, &named, &args->iso, err);
     if (st == CW_OK)
         st = check_report(s, inputs, count, err);
@@ -133,6 +154,8 @@ cw_status cli_extract_check_args(cli_extract_run *s, cw_error *err)
         st = cli_check_color(&args->color, err);
     if (st == CW_OK)
         st = cli_check_printer(&args->printer, err);
+    if (st == CW_OK)
+        st = cli_check_texture(&args->texture, args->output, args->format, err);
     if (st == CW_OK)
         st = check_lod(args, err);
     if (st == CW_OK)

@@ -94,7 +94,7 @@ double cli_extract_shading(const cli_extract_args *args)
 size_t cli_extract_largest(const cli_extract_args *args)
 {
     const bool chooses = args->largest || args->least.given;
-    return args->profile == CLI_PROFILE_PRINT && !chooses ? 1 : args->largest;
+    return args->profile != CLI_PROFILE_NONE && !chooses ? 1 : args->largest;
 }
 
 cw_close_handles_desc cli_extract_handles(const cli_extract_args *args,
@@ -158,11 +158,13 @@ void cli_extract_put_params(cli_json *j, const void *p, const cli_made *made)
         cli_json_number(j, "min_volume_mm3", cli_extract_least_mm3(args, &s->input.volume));
     if (cli_extract_largest(args))
         cli_json_count(j, "largest", cli_extract_largest(args));
-    if (args->profile == CLI_PROFILE_PRINT) {
-        cli_json_text(j, "profile", "print");
-        if (made->print.count)
-            cli_json_printer(j, &made->print.facts.limits);
-    }
+    if (args->profile)
+        cli_json_text(j, "profile",
+                      cli_extract_asset(args) ? cli_extract_asset(args)->name : "print");
+    if (made->print.count)
+        cli_json_printer(j, &made->print.facts.limits);
+    cli_json_texture(j, &args->texture);
+    cli_json_pivot(j, args->pivot);
     if (args->fill_voids)
         cli_json_bool(j, "fill_voids", true);
     if (args->handles.given)

@@ -2,8 +2,10 @@
 #ifndef CLI_EXTRACT_EXTRACT_RUN_H
 #define CLI_EXTRACT_EXTRACT_RUN_H
 
+#include "cli/assets/asset_profile.h"
 #include "cli/extract/pixel_proof.h"
 #include "cli/framework/quantity.h"
+#include "cli/inputs/place_options.h"
 #include "cli/results/animation_frames.h"
 #include "cli/results/color_by.h"
 #include "cli/results/output_names.h"
@@ -34,6 +36,8 @@ typedef struct cli_extract_args {
     cli_length max_move;
     cli_color_args color;
     int profile; /* CLI_PROFILE_... */
+    cli_texture_args texture;
+    int pivot; /* as of cli_placing */
     cli_printer printer;
     cli_pixel_args pixel;
     int inside, normals, progress, topology, placement, accel;
@@ -45,7 +49,7 @@ typedef struct cli_extract_args {
 } cli_extract_args;
 
 /* Choices of --profile. */
-enum { CLI_PROFILE_NONE, CLI_PROFILE_PRINT };
+enum { CLI_PROFILE_NONE, CLI_PROFILE_PRINT, CLI_PROFILE_ASSETS };
 
 /* Decisions made before a surface is extracted. */
 typedef struct cli_extract_plan {
@@ -69,7 +73,8 @@ typedef struct cli_extract_output {
     cli_outputs files;
     cli_frames frames; /* of --animate */
     cli_report report;
-    double start; /* of the surface at hand */
+    cli_maps maps; /* of the surface at hand */
+    double start;  /* the same */
 } cli_extract_output;
 
 /* A run of the command. */
@@ -88,6 +93,12 @@ enum { CLI_EXTRACT_PROVENANCE = 8 };
 
 /* Everything about them that can be refused before the input is touched. */
 CW_NODISCARD cw_status cli_extract_check_args(cli_extract_run *s, cw_error *err);
+
+/* Returns the profile of a mesh that is drawn; NULL: none was chosen. */
+const cli_asset *cli_extract_asset(const cli_extract_args *args);
+
+/* Sets what a profile asks for and was not given. */
+void cli_extract_fill_profile(cli_extract_args *args);
 
 /* Refuses stages that exclude each other, or that a source excludes: labels, or the volume. */
 CW_NODISCARD cw_status cli_check_stages(const cli_extract_args *args, cw_surface_source source,
@@ -174,6 +185,10 @@ CW_NODISCARD cw_status cli_extract_describe(const cli_extract_run *run, double i
 CW_NODISCARD cw_status cli_extract_run_pipeline(cli_extract_run *s, const cli_moment *moment,
                                                 cli_made *made, cw_pipeline_sink sink,
                                                 cw_error *err);
+
+/* Encodes the maps that come with a surface, or with level 0. */
+CW_NODISCARD cw_status cli_extract_take_maps(cli_extract_run *s,
+                                             const cw_pipeline_surface *surface, cw_error *err);
 
 /* Does the same for one surface. */
 CW_NODISCARD cw_status cli_extract_make(cli_extract_run *s, const cli_moment *moment,

@@ -61,6 +61,8 @@ void cli_extract_describe_stages(const cli_extract_args *args, const cli_volume 
     set->handles = cli_extract_handles(args, volume);
     set->smooth = cli_extract_smoothing(args, volume);
     set->cut = cli_cut_desc(&args->cut);
+    set->atlas = cli_atlas_desc(&args->texture);
+    set->bake = cli_bake_desc(&args->texture, 0);
     set->desc = (cw_pipeline_desc){
         .min_volume_mm3 = cli_extract_least_mm3(args, volume),
         .largest = cli_extract_largest(args),
@@ -69,6 +71,8 @@ void cli_extract_describe_stages(const cli_extract_args *args, const cli_volume 
         .smooth = args->smooth.given ? &set->smooth : NULL,
         .cut = args->cut.given ? &set->cut : NULL,
         .cull = args->pixel.cull,
+        .atlas = args->texture.uv ? &set->atlas : NULL,
+        .bake = cli_find_maps(&args->texture) ? &set->bake : NULL,
         .lod = args->lod.n,
         .lod_count = args->lod.count,
     };
@@ -132,7 +136,7 @@ static void end_stage(void *user, cw_stage stage, size_t before, size_t after)
     cli_report *report = &m->run->output.report;
     m->has_levels = m->has_levels || stage == CW_STAGE_LOD;
     if (m->has_levels)
-        return;
+        return; /* texture coordinates and maps, too */
     cli_report_end(report, stage == CW_STAGE_COLOR ? "color" : cw_stage_name(stage),
                    stage == CW_STAGE_EXTRACT ? voxel_count(&m->run->input.volume.view) : before,
                    after);
@@ -173,10 +177,36 @@ cw_status cli_extract_run_pipeline(cli_extract_run *s, const cli_moment *moment,
     return CW_OK;
 }
 
+cw_status cli_extract_take_maps(cli_extract_run *s, const cw_pipeline_surface *surface,
+                                cw_error *err)
+{
+    return surface->maps && surface->level == 0
+               ? cli_encode_maps(surface->maps, &s->output.maps, err)
+               : CW_OK;
+}
+
+/* A surface on its way out of the pipeline. */
+typedef struct taking {
+    cli_extract_run *run;
+    cw_mesh *mesh;
+} taking;
+
+static cw_status take_surface(void *user, cw_pipeline_surface *surface,
+                              const cw_pipeline_facts *facts, cw_error *err)
+{
+    taking *t = user;
+    (void)facts;
+    *t->mesh = *surface->mesh;
+    *surface->mesh = (cw_mesh){0};
+    return cli_extract_take_maps(t->run, surface, err);
+}
+
 cw_status cli_extract_make(cli_extract_run *s, const cli_moment *moment, cli_made *made,
                            cw_mesh *mesh, cw_error *err)
 {
-    return cli_extract_run_pipeline(s, moment, made, cli_mesh_sink(mesh), err);
+    taking t = {s, mesh};
+    *mesh = (cw_mesh){0};
+    return cli_extract_run_pipeline(s, moment, made, (cw_pipeline_sink){take_surface, &t}, err);
 }
 
 /* The distance from the field would not tell of cubic crossings. */

@@ -8,6 +8,7 @@
 #include "core/base/status.h"
 
 #include <stdio.h>
+#include <string.h>
 
 /* The full surface, and the run that makes levels of it. */
 typedef struct lod_run {
@@ -15,6 +16,7 @@ typedef struct lod_run {
     cw_mesh full;
     cw_mesh *levels;
     cw_pipeline_facts facts[CLI_MAX_COUNTS]; /* of each level */
+    double moved[3];                         /* to the pivot */
     size_t triangles;                        /* of all levels */
     cli_pieces pieces;                       /* the full surface is the only one */
 } lod_run;
@@ -24,7 +26,9 @@ static cw_status take_level(void *user, cw_pipeline_surface *surface,
                             const cw_pipeline_facts *facts, cw_error *err)
 {
     lod_run *r = user;
-    (void)err;
+    cw_status st = cli_extract_take_maps(r->run, surface, err);
+    if (st != CW_OK)
+        return st;
     r->facts[surface->level] = *facts;
     r->levels[surface->level] = *surface->mesh;
     r->triangles += surface->mesh->triangle_count;
@@ -34,6 +38,17 @@ static cw_status take_level(void *user, cw_pipeline_surface *surface,
     r->full = *surface->full;
     *surface->full = (cw_mesh){0};
     return CW_OK;
+}
+
+/* Moves level 0 to the pivot, and all others with it. */
+static cw_status move_levels(lod_run *r, double moved[3], cw_error *err)
+{
+    const cli_extract_args *args = r->run->args;
+    cw_status st = cli_move_to_pivot(args->pivot, r->levels, 1, moved, err);
+    const double map[12] = {1, 0, 0, moved[0], 0, 1, 0, moved[1], 0, 0, 1, moved[2]};
+    for (size_t n = 1; n < args->lod.count && st == CW_OK; n++)
+        st = cw_mesh_transform(&r->levels[n], map, err);
+    return st == CW_OK ? cw_mesh_transform(&r->full, map, err) : st;
 }
 
 static cw_status make_levels(void *state, cw_mesh *levels, cw_error *err)
@@ -46,6 +61,8 @@ static cw_status make_levels(void *state, cw_mesh *levels, cw_error *err)
     r->levels = levels;
     cw_status st =
         cli_extract_run_pipeline(s, NULL, made, (cw_pipeline_sink){take_level, r}, err);
+    if (st == CW_OK)
+        st = move_levels(r, r->moved, err);
     if (st != CW_OK)
         return st;
     cli_report_end(&s->output.report, "simplify", r->full.triangle_count, r->triangles);
@@ -87,6 +104,7 @@ static cw_status finish_level(void *state, cli_made *made, cw_mesh *level, cw_er
     lod_run *r = state;
     made->iso = r->run->args->iso.value[0];
     made->facts = r->facts[level - r->levels];
+    memcpy(made->pivot, r->moved, sizeof made->pivot);
     made->least_mm3 = r->run->output.report.made->least_mm3;
     return r->run->args->check ? hold_level(r, made, level, err) : CW_OK;
 }
@@ -121,9 +139,13 @@ static cw_status deliver_levels(void *state, size_t file, const cw_part *parts, 
     how.write.provenance_count = line_count + 1;
     how.unchecked = how.unchecked || all; /* each was by itself */
     how.parts = all ? "levels" : NULL;
+    const cli_made *made = &s->output.report.made[s->output.report.made_count - 1];
     cw_status st =
-        cli_deliver(&s->output.report, &how, parts, count,
-                    s->output.report.made->facts.extracted.border_loops, s->output.start, err);
+        !made->path ? cli_deliver_step(&s->output.report, &how, parts->mesh,
+                                       made->facts.extracted.border_loops, s->output.start, err)
+                    : cli_deliver(&s->output.report, &how, parts, count,
+                                  s->output.report.made->facts.extracted.border_loops,
+                                  s->output.start, err);
     s->output.start = cli_seconds();
     return st;
 }
@@ -136,6 +158,8 @@ cw_status cli_extract_make_lod(cli_extract_run *s, cw_error *err)
                                 .files = &s->output.files,
                                 .report = &s->output.report,
                                 .pieces = &r.pieces,
+                                .is_budget = cli_extract_asset(s->args),
+                                .textures = &s->output.maps.textures,
                                 .make = make_levels,
                                 .finish = finish_level,
                                 .deliver = deliver_levels,

@@ -54,6 +54,8 @@ cw_pipeline_desc cli_describe_full(const cli_surface_settings *set)
     desc.simplify = NULL;
     desc.view_count = desc.lod_count = 0;
     desc.cull = false;
+    desc.atlas = NULL;
+    desc.bake = NULL;
     desc.color = NULL;
     desc.watch = (cw_pipeline_watch){0};
     return desc;

@@ -13,6 +13,8 @@ typedef struct cli_surface_settings {
     cw_smooth_desc smooth;
     cw_cut_desc cut;
     cw_simplify_desc simplify;
+    cw_atlas_desc atlas;
+    cw_bake_desc bake;
 } cli_surface_settings;
 
 /* Returns the settings of the same surface as it is before simplification, culling and colours. */

@@ -10,8 +10,6 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { PIVOT_FILE, PIVOT_BASE, PIVOT_CENTRE };
-
 static const char *const pivots[] = {"file", "base", "centre"};
 
 /* --- the kind of rotations ---------------------------------------------------------------- */
@@ -126,19 +124,45 @@ static cw_status move_parts(cli_mesh *m, size_t count, const double map[12], cw_
     return st == CW_OK ? st : cwi_fail_in(err, st, m->path);
 }
 
-/* Moves to 0,0,0 the middle of the box, or of its lower side. */
+/* Finds the way from the middle of a box, or of its lower side, to 0,0,0. */
+static void find_way(int pivot, const double low[3], const double high[3], double way[3])
+{
+    for (int a = 0; a < 3; a++)
+        way[a] = -(low[a] + (high[a] - low[a]) / 2);
+    if (pivot == CLI_PIVOT_BASE)
+        way[2] = -low[2];
+}
+
 static cw_status move_to_pivot(int pivot, cli_mesh *m, size_t count, cw_error *err)
 {
-    double low[3], high[3];
+    double low[3], high[3], way[3];
     find_box(m, count, low, high);
     if (!(low[0] <= high[0]))
         return CW_OK;
-    double map[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
-    for (int a = 0; a < 3; a++)
-        map[4 * a + 3] = -(low[a] + (high[a] - low[a]) / 2);
-    if (pivot == PIVOT_BASE)
-        map[11] = -low[2];
+    find_way(pivot, low, high, way);
+    const double map[12] = {1, 0, 0, way[0], 0, 1, 0, way[1], 0, 0, 1, way[2]};
     return move_parts(m, count, map, err);
+}
+
+cw_status cli_move_to_pivot(int pivot, cw_mesh *meshes, size_t count, double moved[3],
+                            cw_error *err)
+{
+    double low[3], high[3], box[2][3];
+    cw_status st = CW_OK;
+    moved[0] = moved[1] = moved[2] = 0;
+    if (pivot == CLI_PIVOT_FILE)
+        return CW_OK;
+    cwi_box_clear(low, high);
+    for (size_t n = 0; n < count; n++)
+        if (cw_mesh_bounds(&meshes[n], box[0], box[1]))
+            cwi_box_join(low, high, box[0], box[1]);
+    if (!(low[0] <= high[0]))
+        return CW_OK;
+    find_way(pivot, low, high, moved);
+    const double map[12] = {1, 0, 0, moved[0], 0, 1, 0, moved[1], 0, 0, 1, moved[2]};
+    for (size_t n = 0; n < count && st == CW_OK; n++)
+        st = cw_mesh_transform(&meshes[n], map, err);
+    return st;
 }
 
 cw_status cli_place_parts(const cli_placing *p, cli_mesh *m, cw_error *err)
@@ -147,7 +171,7 @@ cw_status cli_place_parts(const cli_placing *p, cli_mesh *m, cw_error *err)
     double map[12], low[3], high[3];
     make_map(p, map);
     cw_status st = move_parts(m, count, map, err);
-    if (st == CW_OK && p->pivot != PIVOT_FILE)
+    if (st == CW_OK && p->pivot != CLI_PIVOT_FILE)
         st = move_to_pivot(p->pivot, m, count, err);
     if (st != CW_OK)
         return st;
@@ -167,6 +191,11 @@ void cli_json_placing(cli_json *j, const cli_placing *p)
         cli_json_text(j, "mirror", axes[p->mirror - 1]);
     if (p->rotation.count)
         cli_json_text(j, "rotate", p->rotation.text);
-    if (p->pivot)
-        cli_json_text(j, "pivot", pivots[p->pivot]);
+    cli_json_pivot(j, p->pivot);
+}
+
+void cli_json_pivot(cli_json *j, int pivot)
+{
+    if (pivot != CLI_PIVOT_FILE)
+        cli_json_text(j, "pivot", pivots[pivot]);
 }

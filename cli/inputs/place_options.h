@@ -11,6 +11,9 @@ extern const cli_kind cli_kind_rotation;
 
 enum { CLI_MAX_ROTATIONS = 8 };
 
+/* Choices of --pivot. */
+enum { CLI_PIVOT_FILE, CLI_PIVOT_BASE, CLI_PIVOT_CENTRE };
+
 /* Rotations about axes of the world, one after the other. */
 typedef struct cli_rotation {
     size_t count; /* 0: none given */
@@ -65,6 +68,15 @@ CW_NODISCARD cw_status cli_check_placing(const cli_placing *placing, cw_error *e
 /* Places all parts of a mesh that was read, as one, and says so. */
 CW_NODISCARD cw_status cli_place_parts(const cli_placing *placing, cli_mesh *mesh,
                                        cw_error *err);
+
+/* Moves meshes, as one, so that 0,0,0 is where a pivot of cli_placing has it.
+ * moved  mm by which they were moved along each axis: 0 for the file's zero
+ * Returns as cw_mesh_transform() */
+CW_NODISCARD cw_status cli_move_to_pivot(int pivot, cw_mesh *meshes, size_t count,
+                                         double moved[3], cw_error *err);
+
+/* Writes the field pivot if it is not the file's. */
+void cli_json_pivot(cli_json *j, int pivot);
 
 /* Writes the fields scale, mirror, rotate and pivot, as far as they were given. */
 void cli_json_placing(cli_json *j, const cli_placing *placing);

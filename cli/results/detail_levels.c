@@ -2,6 +2,7 @@
  * file a level and one with all. */
 #include "cli/results/detail_levels.h"
 
+#include "cli/assets/asset_profile.h"
 #include "cli/framework/console.h"
 #include "cli/framework/name_template.h"
 #include "cli/framework/quantity.h"
@@ -23,11 +24,16 @@ static const char *const level_names[CLI_MAX_COUNTS] = {
     "lod8", "lod9", "lod10", "lod11", "lod12", "lod13", "lod14", "lod15"};
 
 cw_status cli_name_detail_levels(cli_outputs *files, const char *output, const char *format,
-                                 const char *input, const cli_counts *lod, cw_error *err)
+                                 const char *input, const cli_counts *lod, bool together,
+                                 cw_error *err)
 {
-    const bool apart = cli_lod_files_of(output, format) == CLI_LOD_APART;
+    const bool apart = cli_lod_files_of(output, format) == CLI_LOD_APART ||
+                       (together && cli_holds_lod(output));
     return cli_name_lod_outputs(files, output, input, lod->count,
-                                apart ? CLI_LOD_APART : CLI_LOD_BOTH, err);
+                                apart      ? CLI_LOD_APART
+                                : together ? CLI_LOD_TOGETHER
+                                           : CLI_LOD_BOTH,
+                                err);
 }
 
 static cli_handles_left handles_of(const cli_pieces *p)
@@ -121,10 +127,32 @@ static cw_status check_levels(const cli_detail_levels *d, cw_error *err)
     return CW_OK;
 }
 
+/* Refuses a first level that keeps more triangles than its budget. */
+static cw_status check_budget(const cli_detail_levels *d, cw_error *err)
+{
+    const size_t triangles = d->mesh->triangle_count;
+    const char *hint = handles_text(handles_of(d->pieces), triangles);
+    return d->is_budget && triangles > *d->lod->n
+               ? cwi_fail(err, CW_ERR_CHECK,
+                          "%s: %s triangles were asked for, %s are left: removing more would "
+                          "tear the surface%s; or --lod with more",
+                          d->pieces->path, cli_count(*d->lod->n), cli_count(triangles), hint)
+               : CW_OK;
+}
+
+/* Finds from which distance on the level will do. */
+static void find_switch(cli_made *made)
+{
+    if (made->compared.made)
+        made->switch_m = cli_find_switch_m(cw_mesh_comparison_max(&made->compared.with_input));
+}
+
 static cw_status make_level(cli_detail_levels *d, size_t n, cli_made *made, cw_error *err)
 {
     cw_mesh *level = &d->mesh[n];
     cw_status st = n == 0 ? d->make(d->user, d->mesh, err) : CW_OK;
+    if (st == CW_OK && n == 0)
+        st = check_budget(d, err);
     if (st == CW_OK && n == 0)
         st = check_levels(d, err);
     if (st != CW_OK)
@@ -132,9 +160,11 @@ static cw_status make_level(cli_detail_levels *d, size_t n, cli_made *made, cw_e
     cli_report_missed(d->report, d->pieces, d->lod->n[n], level->triangle_count,
                       d->keeps_border);
     st = d->finish(d->user, made, level, err);
+    find_switch(made);
     if (st == CW_OK)
         st = order_for_drawing(d, level, err);
-    const cw_part part = {.mesh = level, .name = d->pieces->piece->name};
+    const cw_part part = {
+        .mesh = level, .name = d->pieces->piece->name, .textures = d->textures};
     return st == CW_OK ? d->deliver(d->user, n, &part, 1, err) : st;
 }
 
@@ -154,6 +184,7 @@ static cw_status deliver_together(cli_detail_levels *d, const char *path, cw_err
             .level = n,
             .max_error_mm = cw_mesh_comparison_max(c),
             .rms_error_mm = cw_mesh_comparison_rms(c),
+            .textures = d->textures,
         };
     }
     cw_status st = d->deliver(d->user, d->lod->count, parts, d->lod->count, err);
@@ -165,20 +196,22 @@ static cw_status deliver_together(cli_detail_levels *d, const char *path, cw_err
 static void remove_written(const cli_detail_levels *d, size_t count)
 {
     for (size_t n = 0; n < count; n++) {
-        unlink(d->files->path[n]);
+        if (d->report->made[n].written)
+            unlink(d->files->path[n]);
         d->report->made[n].written = false;
     }
 }
 
 cw_status cli_make_detail_levels(cli_detail_levels *d, cw_error *err)
 {
-    const size_t count = d->lod->count;
+    const size_t count = d->lod->count, files = d->files->count;
+    const bool together = files < count; /* levels have no file of their own */
     cw_status st = CW_OK;
-    for (size_t n = 0; n < d->files->count && st == CW_OK; n++) {
-        cli_made *made = cli_report_next(d->report, d->files->path[n], 0);
+    for (size_t n = 0; n < (together ? count + 1 : files) && st == CW_OK; n++) {
+        const char *path = !together ? d->files->path[n] : n < count ? NULL : *d->files->path;
+        cli_made *made = cli_report_next(d->report, path, 0);
         made->name = n < count ? level_names[n] : "all";
-        st = n < count ? make_level(d, n, made, err)
-                       : deliver_together(d, d->files->path[n], err);
+        st = n < count ? make_level(d, n, made, err) : deliver_together(d, path, err);
         if (st != CW_OK) {
             made->error = *err;
             if (!made->written) /* else it is whole, but less exact than asked for */

@@ -9,16 +9,19 @@
  * them. Zero it, and set the first fields. Free it with cli_free_detail_levels(). */
 typedef struct cli_detail_levels {
     const cli_counts *lod;
-    const char *name;         /* of the object inside the file of all; NULL: that file's */
-    const cli_outputs *files; /* as cli_name_detail_levels() names them */
-    cli_report *report;       /* with room for a mesh more than levels */
-    const cli_pieces *pieces; /* the mesh is the only piece, at the latest after `make` */
-    bool keeps_border;        /* the border of the mesh stays as it is */
+    const char *name;            /* of the object inside the file of all; NULL: that file's */
+    const cli_outputs *files;    /* as cli_name_detail_levels() names them */
+    cli_report *report;          /* with room for a mesh more than levels */
+    const cli_pieces *pieces;    /* the mesh is the only piece, at the latest after `make` */
+    bool keeps_border;           /* the border of the mesh stays as it is */
+    bool is_budget;              /* more triangles than asked for are an error, no warning */
+    const cw_textures *textures; /* of all levels; NULL: none */
     /* Makes the meshes of all levels, when the report has begun that of the first. */
     cw_status (*make)(void *user, cw_mesh *levels, cw_error *err);
     /* Checks, measures and shades a level. */
     cw_status (*finish)(void *user, cli_made *made, cw_mesh *level, cw_error *err);
-    /* Writes a file: a level, or all where `file` is the number of levels. */
+    /* Writes a file: a level, or all where `file` is the number of levels. A level without a path has
+     * no file of its own, but a line. */
     cw_status (*deliver)(void *user, size_t file, const cw_part *parts, size_t count,
                          cw_error *err);
     void *user;
@@ -27,10 +30,12 @@ typedef struct cli_detail_levels {
 } cli_detail_levels;
 
 /* Names the files of levels, as cli_name_lod_outputs() does: formats that hold levels get both
- * kinds. format: of --format, or NULL. Free them with cli_free_outputs(). */
+ * kinds, or with `together` one file with all. format: of --format, or NULL. Free them with
+ * cli_free_outputs(). */
 CW_NODISCARD cw_status cli_name_detail_levels(cli_outputs *files, const char *output,
                                               const char *format, const char *input,
-                                              const cli_counts *lod, cw_error *err);
+                                              const cli_counts *lod, bool together,
+                                              cw_error *err);
 
 /* Makes, finishes and delivers the levels, each in the order that is fast to draw. The report
  * gets a mesh a level, lod0, lod1 and so on, and `all` for the file of all. */

@@ -235,6 +235,11 @@ static char *with_lod(const char *text)
     return name;
 }
 
+bool cli_holds_lod(const char *text)
+{
+    return strstr(text, "{lod}");
+}
+
 cw_status cli_name_lod_outputs(cli_outputs *outputs, const char *text, const char *input,
                                size_t levels, cli_lod_files files, cw_error *err)
 {

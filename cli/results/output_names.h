@@ -60,6 +60,9 @@ CW_NODISCARD cw_status cli_check_lod(const cli_counts *lod, cw_error *err);
  * text without {lod} gets "-lod0" and so on in front of its extension, and, with both kinds of
  * files, is itself the name of one more output, the last. Together there is that one alone.
  * Free it with cli_free_outputs(). */
+/* Returns true if a name holds {lod}. */
+bool cli_holds_lod(const char *text);
+
 CW_NODISCARD cw_status cli_name_lod_outputs(cli_outputs *outputs, const char *text,
                                             const char *input, size_t levels,
                                             cli_lod_files files, cw_error *err);

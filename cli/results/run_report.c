@@ -242,6 +242,10 @@ static void put_facts(cli_json *j, const cli_made *m)
         put_snap(j, &m->snap);
     if (m->compared.made || m->compared.has_field)
         put_comparison(j, &m->compared);
+    if (m->switch_m > 0)
+        cli_json_number(j, "switch_distance_m", m->switch_m);
+    if (m->pivot[0] != 0 || m->pivot[1] != 0 || m->pivot[2] != 0)
+        cli_json_numbers(j, "moved_to_pivot_mm", m->pivot, 3);
     cli_json_stages(j, &m->facts, m->least_mm3);
     if (m->print.count)
         cli_json_verdicts(j, m->print.verdicts, m->print.count);

@@ -78,6 +78,8 @@ typedef struct cli_made {
     unsigned dropped;         /* what the file does not hold of it: cw_keeps flags */
     double origin[3];         /* when it is local: the places in the file are relative to it */
     cli_comparison compared;
+    double pivot[3];         /* mm by which it was moved to its pivot */
+    double switch_m;         /* of a level: distance from which on its error is below a pixel */
     double least_mm3;        /* what components had to enclose */
     cw_pipeline_facts facts; /* of the stages that ran */
     cli_printed print;       /* of --profile print */

@@ -1,6 +1,7 @@
 /* The table of what stages tell: a row a stage, for people and for the report. */
 #include "cli/results/stage_facts.h"
 
+#include "cli/assets/texture_options.h"
 #include "cli/framework/console.h"
 #include "cli/framework/quantity.h"
 #include "cli/inputs/cut_options.h"
@@ -210,6 +211,41 @@ static void tell_colors(const cli_staged *s)
     cli_tell_coloring(s->coloring, s->facts);
 }
 
+/* --- textures --------------------------------------------------------------------------------- */
+
+static void tell_atlas(const cli_staged *s)
+{
+    char text[CLI_TEXTURE_TEXT];
+    cli_atlas_text(&s->facts->atlas, text);
+    cli_say("%s: %s", s->subject, text);
+}
+
+static void put_atlas(cli_json *j, const cw_pipeline_facts *f, double least_mm3)
+{
+    (void)least_mm3;
+    cli_json_atlas(j, &f->atlas);
+}
+
+static void tell_maps(const cli_staged *s)
+{
+    char text[CLI_TEXTURE_TEXT];
+    const double missed = cli_find_missed(&s->facts->baked);
+    cli_maps_text(&s->facts->baked, "the full surface", text);
+    cli_say("%s: %s", s->subject, text);
+    if (missed > 0)
+        cli_report_warn(
+            s->report,
+            "%.2g %% of the texels found nothing of the full surface within %.3g mm "
+            "that faces the same way: they are flat",
+            missed, s->facts->baked.reach_mm);
+}
+
+static void put_maps(cli_json *j, const cw_pipeline_facts *f, double least_mm3)
+{
+    (void)least_mm3;
+    cli_json_maps(j, &f->baked);
+}
+
 /* --- the table ------------------------------------------------------------------------------ */
 
 /* In the order in which keys stand in the report. put: NULL: nothing, or another part of it tells */
@@ -226,6 +262,8 @@ static const struct row {
     {CW_STAGE_CUT, tell_cut, put_cut},
     {CW_STAGE_CULL, tell_culling, NULL},
     {CW_STAGE_COLOR, tell_colors, NULL},
+    {CW_STAGE_ATLAS, tell_atlas, put_atlas},
+    {CW_STAGE_MAPS, tell_maps, put_maps},
 };
 
 void cli_tell_stages(const cli_staged *s)

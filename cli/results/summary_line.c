@@ -132,6 +132,14 @@ static void print_distance(const cli_comparison *c)
         cli_result(", within the limit of %.6g mm", c->promised_mm);
 }
 
+/* From which distance on a level of detail will do. */
+static void print_switch(const cli_made *made)
+{
+    if (made->switch_m > 0)
+        cli_result("; less than a pixel from %.3g m on (1080 rows over 60 degrees)",
+                   made->switch_m);
+}
+
 static void print_comparison(const cli_comparison *c)
 {
     if (c->made)
@@ -162,6 +170,7 @@ static void print_facts(const cli_delivery *how, const cli_made *made)
                    made->snap.vertices == 1 ? "vertex" : "vertices", made->snap.max_error_mm,
                    made->snap.max_error_voxels);
     print_comparison(&made->compared);
+    print_switch(made);
     if (made->local)
         cli_result("; coordinates relative to %.15g, %.15g, %.15g mm", made->origin[0],
                    made->origin[1], made->origin[2]);
@@ -179,8 +188,10 @@ void cli_print_summary(const cli_delivery *how, const cli_made *made, const cli_
     struct stat info = {0};
     if (made->written)
         cli_result("%s: ", made->path);
-    else
+    else if (made->moment)
         cli_result("step %zu: ", made->moment->number);
+    else
+        cli_result("%s: ", made->name);
     if (made->measured)
         print_topology(how, &made->quality);
     print_counts(how, made, l);

@@ -56,7 +56,7 @@ static cw_status simplify_slabs(cwi_pipeline *p, cw_mesh *mesh, cw_error *err)
 static cw_status extract_whole(cwi_pipeline *p, cw_mesh *mesh, cw_error *err)
 {
     cw_extract_desc d = describe_extraction(p);
-    d.no_normals = d.no_normals || (p->desc->lod_count && p->adds_normals);
+    d.no_normals = d.no_normals || (p->desc->lod_count && p->adds_normals && !p->desc->bake);
     return p->extractor ? cw_extractor_extract(p->extractor, &d, mesh, &p->facts.extracted, err)
                         : cw_extract(&p->part, &d, mesh, &p->facts.extracted, err);
 }

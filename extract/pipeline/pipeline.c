@@ -42,7 +42,10 @@ static cw_status finish_surface(cwi_pipeline *p, cw_mesh *mesh, size_t level,
     cw_pipeline_surface surface = {.mesh = p->spool ? NULL : mesh,
                                    .spool = p->spool,
                                    .level = level,
-                                   .full = p->levels ? &p->mesh : NULL};
+                                   .full = p->levels       ? &p->mesh
+                                           : p->desc->bake ? &p->full
+                                                           : NULL,
+                                   .maps = p->desc->bake ? p->maps : NULL};
     cw_status st = cwi_finish_surface(p, &surface, sink, err);
     p->spool = surface.spool;
     return st;
@@ -64,6 +67,9 @@ static void free_pipeline(cwi_pipeline *p)
         cw_mesh_free(&p->levels[n]);
     cwi_free(p->levels);
     cw_mesh_free(&p->mesh);
+    cw_mesh_free(&p->full);
+    for (size_t n = 0; n < CW_MAP_COUNT; n++)
+        cw_image_free(&p->maps[n]);
     cw_mesh_spool_free(p->spool);
 }
 
@@ -75,6 +81,8 @@ static cw_status make_full(const cwi_pipeline *p, const cw_volume *volume, bool 
     desc.simplify = NULL;
     desc.view_count = desc.lod_count = 0;
     desc.cull = false;
+    desc.atlas = NULL;
+    desc.bake = NULL;
     desc.extract.no_normals = desc.extract.no_normals || no_normals;
     desc.watch.end = NULL;
     cwi_pipeline full = {.desc = &desc, .volume = volume, .part = *volume};
@@ -107,7 +115,10 @@ cw_status cwi_begin_pipeline(cwi_pipeline *p, cw_surface_source source, cw_pipel
         return cwi_fail(err, CW_ERR_ARGUMENT, "cull needs views; view_count is 0");
     if (d->color && !d->color->open)
         return cwi_fail(err, CW_ERR_ARGUMENT, "color->open is NULL");
-    p->needs_whole = cwi_needs_whole(d);
+    if (d->bake && !(d->atlas && (d->simplify || d->lod_count)))
+        return cwi_fail(err, CW_ERR_ARGUMENT,
+                        "maps are those of a surface before simplify or lod, and need uv");
+    p->needs_whole = cwi_needs_whole(d) || d->bake;
     p->adds_normals = adds_normals(p);
     p->make_full = make_full;
     p->simplify = d->simplify ? *d->simplify : (cw_simplify_desc){0};
@@ -177,6 +188,8 @@ cw_status cw_pipeline_mesh(const cw_volume *volume, cw_extractor *extractor,
     CWI_REQUIRE_VERSION(err, desc, 0);
     CWI_REQUIRE_VERSION(err, facts, 0);
     *mesh = (cw_mesh){0};
+    if (desc->bake)
+        return cwi_fail(err, CW_ERR_ARGUMENT, "maps need the sink of cw_pipeline_run()");
     if (desc->lod_count)
         return cwi_fail(err, CW_ERR_ARGUMENT, "lod_count is %zu; one surface has no levels",
                         desc->lod_count);

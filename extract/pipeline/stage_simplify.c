@@ -13,10 +13,15 @@ cw_status cwi_simplify_surface(cwi_pipeline *p, cw_mesh *mesh, cw_error *err)
     cw_status st = cw_simplify(mesh, &desc, &reduced, NULL, err);
     if (st != CW_OK)
         return st;
-    cw_mesh_free(mesh);
+    if (p->desc->bake)
+        p->full = *mesh;
+    else
+        cw_mesh_free(mesh);
     *mesh = reduced;
     return CW_OK;
 }
+
+/* Makes all levels, or with texture coordinates the first, which then gets them. */
 
 cw_status cwi_make_levels(cwi_pipeline *p, cw_mesh *mesh, cw_error *err)
 {
@@ -27,5 +32,6 @@ cw_status cwi_make_levels(cwi_pipeline *p, cw_mesh *mesh, cw_error *err)
     p->levels = cwi_alloc_zeroed(d->lod_count, sizeof *p->levels);
     if (!p->levels)
         return cwi_fail_memory(err);
-    return cw_simplify_levels(mesh, &desc, d->lod, d->lod_count, p->levels, NULL, err);
+    return cw_simplify_levels(mesh, &desc, d->lod, d->atlas ? 1 : d->lod_count, p->levels, NULL,
+                              err);
 }

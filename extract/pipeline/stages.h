@@ -31,12 +31,14 @@ typedef struct cwi_pipeline {
     const cw_slice_source *slices; /* or NULL */
     const cw_pipeline_labels *labels; /* or NULL */
     cw_mesh mesh;
-    cw_mesh_spool *spool; /* the surface, of slices; or NULL */
-    cw_mesh *levels;      /* lod_count; NULL: there is one surface */
-    bool is_simplified;   /* while it was extracted */
-    bool is_checked;      /* the same */
-    bool needs_whole;     /* before it is simplified */
-    bool adds_normals;    /* those of the field, to finished surfaces */
+    cw_mesh_spool *spool;        /* the surface, of slices; or NULL */
+    cw_mesh full;                /* with maps: the surface before it was simplified */
+    cw_mesh *levels;             /* lod_count; NULL: there is one surface */
+    cw_image maps[CW_MAP_COUNT]; /* of CW_STAGE_MAPS */
+    bool is_simplified;          /* while it was extracted */
+    bool is_checked;             /* the same */
+    bool needs_whole;            /* before it is simplified */
+    bool adds_normals;           /* those of the field, to finished surfaces */
     /* Makes the surface without what simplifies, colours or measures it. mesh: filled on success */
     cw_status (*make_full)(const struct cwi_pipeline *p, const cw_volume *volume,
                            bool no_normals, cw_mesh *mesh, cw_error *err);
@@ -97,8 +99,10 @@ cw_status cwi_cut_surface(cwi_pipeline *p, cw_mesh *mesh, cw_error *err);
 cw_status cwi_simplify_surface(cwi_pipeline *p, cw_mesh *mesh, cw_error *err);
 cw_status cwi_cull_surface(cwi_pipeline *p, cw_mesh *mesh, cw_error *err);
 cw_status cwi_make_levels(cwi_pipeline *p, cw_mesh *mesh, cw_error *err);
+cw_status cwi_lay_flat(cwi_pipeline *p, cw_mesh *mesh, cw_error *err);
 cw_status cwi_add_normals(cwi_pipeline *p, cw_mesh *mesh, cw_error *err);
 cw_status cwi_color_surface(cwi_pipeline *p, cw_mesh *mesh, cw_error *err);
+cw_status cwi_bake_maps(cwi_pipeline *p, cw_mesh *mesh, cw_error *err);
 cw_status cwi_check_surface(cwi_pipeline *p, cw_mesh *mesh, cw_error *err);
 
 #endif

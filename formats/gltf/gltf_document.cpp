@@ -271,17 +271,29 @@ template <typename Node, typename... None> void name_levels(Node &, int, size_t,
 {
 }
 
+// Returns the share of the screen below which a level is enough for the ball around level 0: its error
+// is then less than a pixel of 1920 x 1080. Without an error it has as many triangles to an area there
+// as level 0 has on all of the screen.
+double find_coverage(const cwi_part &first, const cwi_part &level)
+{
+    double low[3], high[3], square = 0;
+    if (!(level.max_error_mm > 0) || !cw_mesh_bounds(&first.mesh, low, high))
+        return double(level.mesh.triangle_count) / double(first.mesh.triangle_count);
+    for (int a = 0; a < 3; a++)
+        square += (high[a] - low[a]) * (high[a] - low[a]) / 4;
+    const double pixels = std::acos(-1.0) * square / (level.max_error_mm * level.max_error_mm);
+    return std::min(1.0, pixels / (1920.0 * 1080));
+}
+
 // Adds levels to the node of level 0. It names the other nodes, and the shares of the screen
-// down to which each is shown. At that share the next level would have as many triangles to an
-// area as level 0 has on all of it. The last level is shown at any smaller share.
+// down to which each is shown. The last level is shown at any smaller share.
 void add_levels(tinygltf::Node &node, const cwi_gltf_piece *levels, size_t count, int first,
                 Object &extras)
 {
     Array ids, coverage;
     for (size_t n = 1; n < count; n++) {
         ids.push_back(tinygltf::Value(first + int(n)));
-        coverage.push_back(tinygltf::Value(double(levels[n].part->mesh.triangle_count) /
-                                           double(levels[0].part->mesh.triangle_count)));
+        coverage.push_back(tinygltf::Value(find_coverage(*levels[0].part, *levels[n].part)));
     }
     coverage.push_back(tinygltf::Value(0.0));
     node.extensions[GLTF_LOD] = tinygltf::Value(Object{{"ids", tinygltf::Value(ids)}});

@@ -9,6 +9,21 @@
 extern "C" {
 #endif
 
+/* The maps that can be baked: constant, and name. One that a later version adds stands at the end. */
+#define CW_MAP_TABLE(X) X(CW_MAP_NORMALS, "normals")
+
+/* Identifies a map. */
+typedef enum cw_map {
+#define CW_X(name, text) name,
+    CW_MAP_TABLE(CW_X)
+#undef CW_X
+        CW_MAP_COUNT
+} cw_map;
+
+/* Returns the name of a map, such as "normals"; static. NULL for an unknown one.
+ * map  any number */
+CW_API const char *cw_map_name(cw_map map);
+
 /* Settings of a bake. Zero-initialise the struct and set what you need; a zero field means the default
  * named beside it. */
 typedef struct cw_bake_desc {
@@ -18,6 +33,8 @@ typedef struct cw_bake_desc {
     double reach_mm;  /* how far the full surface may be; default: 4 % of the box's diagonal */
     int threads;      /* default: one per processor */
     cw_progress progress; /* default: none */
+    /* Of a pipeline: the maps, a bit 1u << cw_map for each; default: that of normals */
+    unsigned maps;
 } cw_bake_desc;
 
 /* Facts on a finished bake. */
@@ -28,6 +45,7 @@ typedef struct cw_bake_facts {
     double max_mm;   /* the largest distance that was bridged, and */
     double mean_mm;  /* the mean */
     double mean_deg; /* the mean angle between the normals of both surfaces */
+    double reach_mm; /* as in the settings, or the default */
 } cw_bake_facts;
 
 /* Bakes the normals of a full surface into a normal map in the tangent space of [Mikkelsen2008], as glTF

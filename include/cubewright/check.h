@@ -16,14 +16,15 @@ typedef enum cw_profile {
     CW_PROFILE_BASIC, /* an oriented 2-manifold without flaws, open or closed */
     CW_PROFILE_PRINT, /* basic, closed, free of crossings, and of a size that printers can make
                        */
-    CW_PROFILE_WEB,   /* to be looked at: it faces outward, has normals, and is not too large */
+    CW_PROFILE_WEB,   /* to be looked at: it faces outward, has normals, and keeps its budget */
     CW_PROFILE_FEM,   /* print without the size; angles and shapes that simulations can use */
+    CW_PROFILE_GAME,  /* as for the web, with the budget of a game's asset */
+    CW_PROFILE_MOBILE, /* the same for telephones and headsets */
 } cw_profile;
 
-/* Limits of the profiles: sizes of a print; triangles for the web; shapes for FEM. */
+/* Limits of the profiles: sizes of a print; shapes for FEM. See cw_check_budget(), too. */
 #define CW_PRINT_MIN_MM      5.0
 #define CW_PRINT_MAX_MM      400.0
-#define CW_WEB_MAX_TRIANGLES 1000000
 #define CW_FEM_MIN_ANGLE_DEG 10.0
 #define CW_FEM_MAX_ASPECT    10.0
 
@@ -45,11 +46,26 @@ typedef struct cw_findings {
     double tolerance_mm;    /* for the distances; 0: no limit, distances are only reported */
     bool has_normals;       /* the mesh has normals */
     const char *file_fault; /* cw_mesh_file.fault of the file; NULL or "": none */
+    size_t file_bytes;      /* of the file; 0: not known */
     const cw_appearance *looks;      /* cw_appearance_measure() beside the reference, and */
     const cw_appearance *bare_looks; /* the same without maps, if there are some */
     double max_delta_e;              /* limit of their mean CIEDE2000; 0: none */
     double min_psnr_db;              /* limit of their PSNR; 0: none */
 } cw_findings;
+
+enum { CW_BUDGET_LEVELS = 4 }; /* maximum of levels of detail in a budget */
+
+/* The budget of a mesh that is drawn. */
+typedef struct cw_budget {
+    size_t triangles[CW_BUDGET_LEVELS]; /* of each level of detail, falling; 0: there is none */
+    uint32_t texture_size;              /* texels along each side of its textures */
+    size_t file_bytes;                  /* of its file */
+} cw_budget;
+
+/* Returns the budget of a profile, which cw_check_judge() holds a mesh against; static. NULL: the profile has
+ * none.
+ * profile  any number */
+CW_API const cw_budget *cw_check_budget(cw_profile profile);
 
 /* Grades, from the worst to the best. */
 typedef enum cw_grade {

@@ -2,6 +2,8 @@
 #ifndef CUBEWRIGHT_PIPELINE_H
 #define CUBEWRIGHT_PIPELINE_H
 
+#include <cubewright/atlas.h>
+#include <cubewright/bake.h>
 #include <cubewright/color.h>
 #include <cubewright/cut.h>
 #include <cubewright/extract.h>
@@ -17,8 +19,9 @@ extern "C" {
 #endif
 
 /* The stages: constant, and name. They run in this order, but that handles are closed between
- * CW_STAGE_FILL_VOIDS and CW_STAGE_SMOOTH. One that a later version adds gets the next number, wherever it
- * runs. */
+ * CW_STAGE_FILL_VOIDS and CW_STAGE_SMOOTH, texture coordinates are made between CW_STAGE_LOD and
+ * CW_STAGE_NORMALS, and maps are baked between CW_STAGE_COLOR and CW_STAGE_CHECK. One that a later version
+ * adds gets the next number, wherever it runs. */
 #define CW_STAGE_TABLE(X)                                                                      \
     X(CW_STAGE_VIEWS, "camera")                                                                \
     X(CW_STAGE_EXTRACT, "extract")                                                             \
@@ -33,7 +36,9 @@ extern "C" {
     X(CW_STAGE_NORMALS, "normals")                                                             \
     X(CW_STAGE_COLOR, "color_by")                                                              \
     X(CW_STAGE_CHECK, "check")                                                                 \
-    X(CW_STAGE_HANDLES, "close_handles")
+    X(CW_STAGE_HANDLES, "close_handles")                                                       \
+    X(CW_STAGE_ATLAS, "uv")                                                                    \
+    X(CW_STAGE_MAPS, "maps")
 
 /* Identifies a stage. */
 typedef enum cw_stage {
@@ -100,6 +105,9 @@ typedef struct cw_pipeline_desc {
     const char *spool_path;  /* of slices: temporary files stand in the folder of this path */
     cw_pipeline_watch watch; /* default: none */
     const cw_close_handles_desc *close_handles; /* close its small handles and tunnels */
+    const cw_atlas_desc *atlas; /* give it texture coordinates; levels of detail share them */
+    const cw_bake_desc *bake;   /* bake maps of the surface before simplify or lod; needs atlas.
+                                   Size and margin are those of the atlas */
 } cw_pipeline_desc;
 
 /* Results of the stages that ran; those of others are zero. Zero-initialise the struct before it is
@@ -119,6 +127,8 @@ typedef struct cw_pipeline_facts {
     double color_low, color_high;   /* the ends of its map */
     cw_quality quality;             /* CW_STAGE_CHECK: of the surface given away last */
     cw_close_handles_facts handles; /* CW_STAGE_HANDLES */
+    cw_atlas_facts atlas;           /* CW_STAGE_ATLAS: of the surface, or of level 0 */
+    cw_bake_facts baked;            /* CW_STAGE_MAPS: the same */
 } cw_pipeline_facts;
 
 /* A finished surface, or a level of detail. */
@@ -128,7 +138,10 @@ typedef struct cw_pipeline_surface {
     size_t level;         /* of detail, from 0 */
     size_t layer;         /* of labels, from 0 */
     uint32_t label;       /* of labels: whose surface it is */
-    cw_mesh *full;        /* of levels: the surface that they were made of; else NULL */
+    cw_mesh *full; /* of levels, and with maps: the surface that it was made of; else NULL */
+    /* CW_MAP_COUNT images, of level 0 or of the surface; all levels share them. Those that were not
+     * baked have no pixels. Borrowed until the pipeline ends; NULL: there are none */
+    const cw_image *maps;
 } cw_pipeline_surface;
 
 /* Receives finished surfaces, one after the other. A status other than CW_OK stops the pipeline,
@@ -160,7 +173,8 @@ CW_NODISCARD CW_API cw_status cw_pipeline_check(cw_surface_source source, unsign
  *
  * Where it can, a surface is simplified slab by slab while it is extracted, and is never whole.
  * A simplified surface gets normals of the field, unless it was smoothed or cut, or
- * its handles were closed.
+ * its handles were closed. With texture coordinates the levels after the first are made from it along
+ * its seams, so that its maps are theirs, too.
  *
  * volume     borrowed; as in cw_extract()
  * extractor  of this volume, for one of several surfaces; NULL: this one by itself
@@ -178,7 +192,7 @@ CW_NODISCARD CW_API cw_status cw_pipeline_run(const cw_volume *volume, cw_extrac
                                               cw_error *err);
 
 /* Does the same for one surface, and fills a mesh with it.
- * desc     borrowed; lod_count is 0
+ * desc     borrowed; lod_count is 0, and bake NULL
  * mesh     filled on success, emptied on failure; free it with cw_mesh_free()
  * facts    as in cw_pipeline_run()
  * Returns  as cw_pipeline_run() */

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from ctypes import byref
 from dataclasses import dataclass
 
@@ -12,9 +13,11 @@ from . import _declarations as c
 from ._library import lib
 from ._memory import Owner
 from ._mesh import Mesh, take_mesh
-from ._options import take_count, take_length, take_number, take_threads
+from ._options import take_choice, take_count, take_length, take_number, take_threads
 from ._progress import Progress, Reporter
 from ._render import lend_image
+
+MAPS = tuple(lib.cw_map_name(n).decode() for n in range(c.cw_map.CW_MAP_COUNT))
 
 
 @dataclass(frozen=True)
@@ -34,6 +37,23 @@ class Atlas:
     stretch: float  # L2 of the whole surface: 1 is none
     coverage: float  # share of the texture that triangles cover
     flipped: int  # triangles turned over by the rounding to single precision
+
+
+def describe_atlas(
+    size: int = 2048, margin: int = 2, texels_per_mm: float = 0.0, max_stretch: float = 0.0
+) -> c.cw_atlas_desc:
+    return c.cw_atlas_desc(
+        size=take_count("size", size, 64, 16384),
+        margin=take_count("margin", margin, 1, 64),
+        texels_per_mm=take_number("texels_per_mm", texels_per_mm),
+        max_stretch=take_number("max_stretch", max_stretch),
+    )
+
+
+def take_maps(maps: Iterable[str]) -> int:
+    """Returns names of maps as the bits of cw_bake_desc.maps."""
+    names = (maps,) if isinstance(maps, str) else tuple(maps)
+    return sum({1 << take_choice("maps", name, MAPS) for name in names})
 
 
 def atlas(
@@ -59,14 +79,8 @@ def atlas(
     """
     take_mesh("mesh", mesh)
     reporter = Reporter(progress)
-    desc = c.cw_atlas_desc(
-        size=take_count("size", size, 64, 16384),
-        margin=take_count("margin", margin, 1, 64),
-        texels_per_mm=take_number("texels_per_mm", texels_per_mm),
-        max_stretch=take_number("max_stretch", max_stretch),
-        threads=take_threads(threads),
-        progress=reporter.struct,
-    )
+    desc = describe_atlas(size, margin, texels_per_mm, max_stretch)
+    desc.threads, desc.progress = take_threads(threads), reporter.struct
     out, facts = mesh.copy(), c.cw_atlas_facts()
     reporter.call(lib.cw_mesh_atlas, byref(out._struct), byref(desc), byref(facts))
     return Atlas(

@@ -21,7 +21,7 @@ from ._options import take_choice, take_flag, take_length, take_lengths, take_nu
 from ._progress import Progress, Reporter
 from ._volume import Volume, take_volume
 
-PROFILES = ("basic", "print", "web", "fem")
+PROFILES = ("basic", "print", "web", "fem", "game", "mobile")
 
 
 @dataclass(frozen=True)
@@ -235,7 +235,7 @@ def check(
 ) -> Check:
     """Measures a mesh and holds it against a profile.
 
-    profile    what the mesh must be fit for: 'basic', 'print', 'web' or 'fem'
+    profile    what the mesh must be fit for: 'basic', 'print', 'web', 'fem', 'game' or 'mobile'
     deep       look for self-intersections in every profile. CGAL is not asked; the command does
     source     a volume to measure the distance to; needs iso, as for extract()
     reference  a mesh to measure the distance to, both ways

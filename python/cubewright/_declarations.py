@@ -37,6 +37,7 @@ CW_LABELS_MAX = 255
 CW_ANGLE_BINS = 18
 CW_ASPECT_BINS = 9
 CW_LENGTH_BINS = 20
+CW_BUDGET_LEVELS = 4
 CW_MAX_VERDICTS = 32
 CW_TEAM_MAX = 4096
 CW_TRANSFER_POINTS = 64
@@ -59,7 +60,6 @@ CW_PRINT_MIN_MM = 5.0
 CW_SIMPLIFIER_SLAB = 524288
 CW_TEXTURE_COORDINATES = 'texture_coordinates'
 CW_VERSION = '0.2.0'
-CW_WEB_MAX_TRIANGLES = 1000000
 
 
 class cw_status(enum.IntEnum):
@@ -124,6 +124,11 @@ class cw_interpolation(enum.IntEnum):
     CW_INTERPOLATE_COUNT = 4
 
 
+class cw_map(enum.IntEnum):
+    CW_MAP_NORMALS = 0
+    CW_MAP_COUNT = 1
+
+
 class cw_boolean_op(enum.IntEnum):
     CW_BOOLEAN_UNION = 0
     CW_BOOLEAN_DIFFERENCE = 1
@@ -161,6 +166,8 @@ class cw_profile(enum.IntEnum):
     CW_PROFILE_PRINT = 1
     CW_PROFILE_WEB = 2
     CW_PROFILE_FEM = 3
+    CW_PROFILE_GAME = 4
+    CW_PROFILE_MOBILE = 5
 
 
 class cw_grade(enum.IntEnum):
@@ -354,7 +361,9 @@ class cw_stage(enum.IntEnum):
     CW_STAGE_COLOR = 11
     CW_STAGE_CHECK = 12
     CW_STAGE_HANDLES = 13
-    CW_STAGE_COUNT = 14
+    CW_STAGE_ATLAS = 14
+    CW_STAGE_MAPS = 15
+    CW_STAGE_COUNT = 16
 
 
 class cw_surface_source(enum.IntEnum):
@@ -903,6 +912,7 @@ class cw_bake_desc(Structure):
     reach_mm: float
     threads: int
     progress: Any
+    maps: int
 
 
 cw_bake_desc._fields_ = [
@@ -912,6 +922,7 @@ cw_bake_desc._fields_ = [
     ("reach_mm", c_double),
     ("threads", c_int),
     ("progress", cw_progress),
+    ("maps", c_uint),
 ]
 
 
@@ -921,6 +932,7 @@ class cw_bake_facts(Structure):
     max_mm: float
     mean_mm: float
     mean_deg: float
+    reach_mm: float
 
 
 cw_bake_facts._fields_ = [
@@ -929,6 +941,7 @@ cw_bake_facts._fields_ = [
     ("max_mm", c_double),
     ("mean_mm", c_double),
     ("mean_deg", c_double),
+    ("reach_mm", c_double),
 ]
 
 
@@ -1517,6 +1530,7 @@ class cw_findings(Structure):
     tolerance_mm: float
     has_normals: bool
     file_fault: bytes | None
+    file_bytes: int
     looks: Any
     bare_looks: Any
     max_delta_e: float
@@ -1539,10 +1553,24 @@ cw_findings._fields_ = [
     ("tolerance_mm", c_double),
     ("has_normals", c_bool),
     ("file_fault", c_char_p),
+    ("file_bytes", c_size_t),
     ("looks", POINTER(cw_appearance)),
     ("bare_looks", POINTER(cw_appearance)),
     ("max_delta_e", c_double),
     ("min_psnr_db", c_double),
+]
+
+
+class cw_budget(Structure):
+    triangles: Any
+    texture_size: int
+    file_bytes: int
+
+
+cw_budget._fields_ = [
+    ("triangles", c_size_t * 4),
+    ("texture_size", c_uint32),
+    ("file_bytes", c_size_t),
 ]
 
 
@@ -3262,6 +3290,8 @@ class cw_pipeline_desc(Structure):
     spool_path: bytes | None
     watch: Any
     close_handles: Any
+    atlas: Any
+    bake: Any
 
 
 cw_pipeline_desc._fields_ = [
@@ -3284,6 +3314,8 @@ cw_pipeline_desc._fields_ = [
     ("spool_path", c_char_p),
     ("watch", cw_pipeline_watch),
     ("close_handles", POINTER(cw_close_handles_desc)),
+    ("atlas", POINTER(cw_atlas_desc)),
+    ("bake", POINTER(cw_bake_desc)),
 ]
 
 
@@ -3304,6 +3336,8 @@ class cw_pipeline_facts(Structure):
     color_high: float
     quality: Any
     handles: Any
+    atlas: Any
+    baked: Any
 
 
 cw_pipeline_facts._fields_ = [
@@ -3323,6 +3357,8 @@ cw_pipeline_facts._fields_ = [
     ("color_high", c_double),
     ("quality", cw_quality),
     ("handles", cw_close_handles_facts),
+    ("atlas", cw_atlas_facts),
+    ("baked", cw_bake_facts),
 ]
 
 
@@ -3333,6 +3369,7 @@ class cw_pipeline_surface(Structure):
     layer: int
     label: int
     full: Any
+    maps: Any
 
 
 cw_pipeline_surface._fields_ = [
@@ -3342,6 +3379,7 @@ cw_pipeline_surface._fields_ = [
     ("layer", c_size_t),
     ("label", c_uint32),
     ("full", POINTER(cw_mesh)),
+    ("maps", POINTER(cw_image)),
 ]
 
 
@@ -3680,6 +3718,7 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "cw_appearance_draw": (c_int, [POINTER(cw_surface_look), c_size_t, POINTER(cw_camera), POINTER(cw_appearance_desc), POINTER(cw_image), POINTER(cw_error)]),
     "cw_mesh_atlas": (c_int, [POINTER(cw_mesh), POINTER(cw_atlas_desc), POINTER(cw_atlas_facts), POINTER(cw_error)]),
     "cw_mesh_split_seams": (c_int, [POINTER(cw_mesh), POINTER(cw_error)]),
+    "cw_map_name": (c_char_p, [c_int]),
     "cw_bake_normals": (c_int, [POINTER(cw_mesh), POINTER(cw_mesh), POINTER(cw_bake_desc), POINTER(cw_image), POINTER(cw_bake_facts), POINTER(cw_error)]),
     "cw_mesh_boolean": (c_int, [POINTER(POINTER(cw_mesh)), c_size_t, POINTER(cw_boolean_desc), POINTER(cw_mesh), POINTER(cw_boolean_facts), POINTER(cw_error)]),
     "cw_distance_to_field": (c_int, [POINTER(cw_mesh), POINTER(cw_volume), POINTER(cw_field_distance_desc), POINTER(cw_distance), POINTER(c_float), POINTER(cw_error)]),
@@ -3719,6 +3758,7 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "cw_quality_has_cgal": (c_bool, []),
     "cw_quality_ask_cgal": (c_int, [POINTER(cw_mesh), c_int, POINTER(cw_cgal_facts), POINTER(cw_error)]),
     "cw_distance_by_cgal": (c_int, [POINTER(cw_mesh), POINTER(cw_mesh), c_double, POINTER(c_double), POINTER(cw_error)]),
+    "cw_check_budget": (POINTER(cw_budget), [c_int]),
     "cw_check_wants_crossings": (c_bool, [c_int]),
     "cw_check_judge": (c_size_t, [POINTER(cw_findings), c_int, POINTER(cw_verdict)]),
     "cw_check_holds": (c_bool, [POINTER(cw_verdict), c_size_t]),

@@ -9,9 +9,11 @@ from ctypes import POINTER, byref, c_size_t, c_uint32, memmove, memset, pointer,
 from dataclasses import dataclass
 from typing import Any, Union
 
+import numpy as np
 import numpy.typing as npt
 
 from . import _declarations as c
+from ._atlas import MAPS, describe_atlas, take_maps
 from ._color import COLORMAPS
 from ._cut import describe_cut
 from ._errors import Error, Status, call
@@ -30,6 +32,7 @@ from ._options import (
     take_threads,
 )
 from ._progress import Progress, Reporter
+from ._render import copy_image
 from ._simplify import describe_smoothing, take_counts
 from ._volume import Volume, take_volume
 
@@ -64,6 +67,7 @@ class Settings:
     smooth: str | dict[str, Any] | None = None
     cut_plane: tuple[Sequence[float], Sequence[float]] | None = None
     simplify: int | float | str | None = None
+    uv: bool | dict[str, Any] = False
     color_by: AnyVolume | None = None
     colormap: str = "viridis"
     color_range: tuple[float, float] | None = None
@@ -106,6 +110,8 @@ class Settings:
             desc.simplify = pointer(c.cw_simplify_desc(error_mm=error))
         elif self.simplify is not None:
             desc.simplify = pointer(c.cw_simplify_desc(triangles=take_count("simplify", self.simplify, 1)))
+        if self.uv:
+            desc.atlas = pointer(describe_atlas(**({} if self.uv is True else self.uv)))
         if self.color_by is not None:
             desc.color = pointer(describe_coloring(self.color_by, self.colormap, self.color_range))
         return desc
@@ -128,6 +134,7 @@ def extract(
     smooth: str | dict[str, Any] | None = None,
     cut_plane: tuple[Sequence[float], Sequence[float]] | None = None,
     simplify: int | float | str | None = None,
+    uv: bool | dict[str, Any] = False,
     color_by: AnyVolume | None = None,
     colormap: str = "viridis",
     color_range: tuple[float, float] | None = None,
@@ -161,6 +168,7 @@ def extract(
     cut_plane   (point, normal) as of cut(): what is above stays, and is closed flat
     simplify    a float: error limit in mm; a text: the same with its unit, "0.1mm" or "0.5vox"; an int:
                 triangle count. See simplify()
+    uv          make texture coordinates: True, or a dict of the keywords of atlas(): {"size": 1024}
     color_by    another volume, whose values become scalars and colours. See color_by()
     colormap, color_range  the map, and the values of its ends; None: those of the vertices
     component, step  of volumes with several, from 0
@@ -176,17 +184,41 @@ def extract(
     return run_pipeline(volume, iso, Settings(**options), component, step)
 
 
+class Levels(list[Mesh]):
+    """Levels of detail, from the finest to the coarsest.
+
+    maps  of all levels, by name: {"normals": image}, image (size, size, 4) uint8, top row first
+    """
+
+    maps: dict[str, npt.NDArray[np.uint8]]
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.maps = {}
+
+
 def extract_levels(
-    volume: AnyVolume, iso: float, triangles: Sequence[int], *, component: int = 0, step: int = 0, **options: Any
-) -> list[Mesh]:
+    volume: AnyVolume,
+    iso: float,
+    triangles: Sequence[int],
+    *,
+    maps: str | Iterable[str] = (),
+    reach: float | str = 0.0,
+    component: int = 0,
+    step: int = 0,
+    **options: Any,
+) -> Levels:
     """Extracts a surface, and returns levels of detail of it, each made from the one before.
 
     triangles  number of each level, fewer than of the one before
+    maps       maps of the full surface to bake: "normals". They need uv, and all levels share them and the
+               texture coordinates. Write each level as Part(name, level, normal_map=levels.maps["normals"])
+    reach      a length: how far the full surface may be from the first level; 0: 4 % of the box's diagonal
     options    as of extract(), but simplify. Normals are those of the field
 
     Raises Error as extract(), and EMPTY for a volume without a crossing.
     """
-    levels: list[Mesh] = []
+    levels = Levels()
     counts = take_counts(triangles)
     source = take_volume(volume)
     view = source._select(component, step)
@@ -194,6 +226,9 @@ def extract_levels(
     reporter = Reporter(settings.progress)
     desc = settings.describe(iso, source, reporter)
     desc.lod, desc.lod_count = (c_size_t * len(counts))(*counts), len(counts)
+    wanted = take_maps(maps)
+    if wanted:
+        desc.bake = pointer(c.cw_bake_desc(maps=wanted, reach_mm=take_length("reach", reach, volume=source)))
 
     def take_level(_user: int | None, surface: Any, facts: Any, _err: Any) -> int:
         mesh = Mesh._from_c(c.cw_mesh())
@@ -201,6 +236,8 @@ def extract_levels(
         memmove(byref(mesh._struct), surface.contents.mesh, sizeof(c.cw_mesh))
         memset(surface.contents.mesh, 0, sizeof(c.cw_mesh))
         levels.append(mesh)
+        for n, name in enumerate(MAPS if wanted and surface.contents.level == 0 else ()):
+            levels.maps[name] = copy_image(surface.contents.maps[n])
         return 0
 
     sink = c.cw_pipeline_sink(take=_TAKE(take_level))

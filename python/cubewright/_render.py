@@ -215,6 +215,12 @@ def lend_image(owner: Owner[c.cw_image]) -> npt.NDArray[np.uint8]:
     return lend_array(owner, find_address(image.pixels), "u1", (image.height, image.width, 4))
 
 
+def copy_image(image: c.cw_image) -> npt.NDArray[np.uint8]:
+    """Returns the pixels of a picture that the library keeps."""
+    shape = (image.height, image.width, 4)
+    return np.ctypeslib.as_array(image.pixels, shape).copy()
+
+
 def write_png(path: Path, picture: npt.NDArray[np.uint8]) -> None:
     """Writes a picture of (height, width, 4) or (height, width, 3) uint8 as a PNG."""
     image, _pixels = borrow_image(picture)

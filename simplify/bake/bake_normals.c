@@ -195,7 +195,7 @@ static void bake_row(void *context, size_t y)
 static void sum_facts(const baking *b, cw_bake_facts *facts)
 {
     double mm = 0, deg = 0;
-    *facts = (cw_bake_facts){0};
+    *facts = (cw_bake_facts){.reach_mm = b->reach};
     for (uint32_t y = 0; y < b->size; y++) {
         facts->texels += b->rows[y].texels;
         facts->missed += b->rows[y].missed;
@@ -258,6 +258,16 @@ static cw_status bake(baking *b, const cw_bake_desc *d, cw_image *image, cw_erro
     if (st != CW_OK)
         cw_image_free(image);
     return st;
+}
+
+const char *cw_map_name(cw_map map)
+{
+    static const char *const names[CW_MAP_COUNT] = {
+#define CW_X(name, text) text,
+        CW_MAP_TABLE(CW_X)
+#undef CW_X
+    };
+    return (unsigned)map < CW_MAP_COUNT ? names[map] : NULL;
 }
 
 static cw_status check_inputs(const cw_mesh *mesh, const cw_mesh *full, const cw_bake_desc *d,

@@ -9,13 +9,14 @@
 typedef struct bench {
     const cw_findings *f;
     cw_profile profile;
+    int column; /* of grades */
     cw_verdict *verdicts;
     size_t count;
 } bench;
 
 /* How bad a fault is for each profile. */
 typedef struct severity {
-    cw_grade grade[4]; /* basic, print, web, fem */
+    cw_grade grade[4]; /* basic, print, web and the like, fem */
 } severity;
 
 static const severity always = {{CW_GRADE_FAIL, CW_GRADE_FAIL, CW_GRADE_FAIL, CW_GRADE_FAIL}};
@@ -58,7 +59,7 @@ static cw_verdict *add_count(bench *b, const char *name, const severity *s, size
                              const char *none, const char *advice)
 {
     cw_verdict *v =
-        add_verdict(b, name, count ? s->grade[b->profile] : CW_GRADE_OK, (double)count);
+        add_verdict(b, name, count ? s->grade[b->column] : CW_GRADE_OK, (double)count);
     say_finding(v, "%s", none);
     v->advice = count ? advice : NULL;
     return v;
@@ -80,7 +81,7 @@ static void judge_size(bench *b)
         high = fmax(high, q->max[a] - q->min[a]);
     const bool fits = high >= CW_PRINT_MIN_MM && high <= CW_PRINT_MAX_MM;
     cw_verdict *v =
-        add_verdict(b, "size", fits ? CW_GRADE_OK : for_print.grade[b->profile], high);
+        add_verdict(b, "size", fits ? CW_GRADE_OK : for_print.grade[b->column], high);
     say_finding(v, "the box is %.6g x %.6g x %.6g mm", q->max[0] - q->min[0],
                 q->max[1] - q->min[1], q->max[2] - q->min[2]);
     if (!fits)
@@ -199,7 +200,7 @@ static void judge_shapes(bench *b)
         return;
     const bool good =
         s->min_angle_deg >= CW_FEM_MIN_ANGLE_DEG && s->max_aspect <= CW_FEM_MAX_ASPECT;
-    cw_verdict *v = add_verdict(b, "shapes", good ? CW_GRADE_OK : for_fem.grade[b->profile],
+    cw_verdict *v = add_verdict(b, "shapes", good ? CW_GRADE_OK : for_fem.grade[b->column],
                                 s->min_angle_deg);
     say_finding(
         v,
@@ -330,17 +331,33 @@ static void judge_print(bench *b)
     judge_stand(b);
 }
 
+static void judge_file_size(bench *b, const cw_budget *budget)
+{
+    const size_t bytes = b->f->file_bytes;
+    const bool much = bytes > budget->file_bytes;
+    cw_verdict *v =
+        add_verdict(b, "file size", much ? CW_GRADE_WARN : CW_GRADE_OK, (double)bytes);
+    say_finding(v, "%.3g MB; the profile's budget is %.3g MB", (double)bytes / 1e6,
+                (double)budget->file_bytes / 1e6);
+    if (much)
+        v->advice = "compress it, or use smaller textures";
+}
+
 static void judge_look(bench *b)
 {
     const cw_quality *q = b->f->quality;
-    if (b->profile != CW_PROFILE_WEB)
+    const cw_budget *budget = cw_check_budget(b->profile);
+    if (!budget)
         return;
-    const bool many = q->triangles > CW_WEB_MAX_TRIANGLES;
+    const bool many = q->triangles > budget->triangles[0];
     cw_verdict *v =
         add_verdict(b, "weight", many ? CW_GRADE_WARN : CW_GRADE_OK, (double)q->triangles);
-    say_finding(v, "%zu triangles", q->triangles);
+    say_finding(v, "%zu triangles; the profile's budget is %zu", q->triangles,
+                budget->triangles[0]);
     if (many)
-        v->advice = "more than a million is slow to load: reduce the mesh";
+        v->advice = "reduce the mesh: detail beyond that belongs into a normal map";
+    if (b->f->file_bytes)
+        judge_file_size(b, budget);
     if (b->f->file_fault && *b->f->file_fault) {
         v = add_verdict(b, "file", CW_GRADE_FAIL, 1);
         say_finding(v, "%s", b->f->file_fault);
@@ -430,7 +447,7 @@ static void judge_topology(bench *b)
         return;
     const bool same = q->components == t->components && q->euler == t->euler &&
                       q->border_loops == t->border_loops;
-    cw_verdict *v = add_verdict(b, "topology", same ? CW_GRADE_OK : look.grade[b->profile],
+    cw_verdict *v = add_verdict(b, "topology", same ? CW_GRADE_OK : look.grade[b->column],
                                 fabs((double)q->components - (double)t->components));
     if (same)
         say_finding(v, "as the field's: %zu component%s, Euler number %lld, %zu border loop%s",
@@ -489,12 +506,26 @@ static void sort_verdicts(cw_verdict *v, size_t count)
     }
 }
 
+const cw_budget *cw_check_budget(cw_profile profile)
+{
+    static const cw_budget budgets[] = {
+        [CW_PROFILE_WEB] = {{100000}, 1024, 5000000},
+        [CW_PROFILE_GAME] = {{10000, 5000, 2500}, 2048, 16000000},
+        [CW_PROFILE_MOBILE] = {{5000, 2500, 1250}, 1024, 3000000},
+    };
+    const size_t count = sizeof budgets / sizeof *budgets;
+    return (unsigned)profile < count && budgets[profile].file_bytes ? &budgets[profile] : NULL;
+}
+
 size_t cw_check_judge(const cw_findings *findings, cw_profile profile,
                       cw_verdict verdicts[CW_MAX_VERDICTS])
 {
     if (!findings || !verdicts)
         return 0;
-    bench b = {findings, profile, verdicts, 0};
+    bench b = {.f = findings,
+               .profile = profile,
+               .column = cw_check_budget(profile) ? CW_PROFILE_WEB : (int)profile,
+               .verdicts = verdicts};
     judge_size(&b);
     judge_surface(&b);
     judge_shells(&b);

@@ -87,6 +87,20 @@ class Surfaces(Case):
             np.testing.assert_array_equal(wanted.triangles, level.triangles)
         with self.assertRaises(cw.Error):
             cw.extract_levels(head, 300, [4000, 1000], simplify=500)
+        with self.assertRaises(cw.Error):
+            cw.extract_levels(head, 300, [4000, 1000], maps="normals")  # without uv
+        with self.assertRaises(ValueError):
+            cw.extract_levels(head, 300, [4000, 1000], uv=True, maps="shadows")
+        levels = cw.extract_levels(
+            head, 300, [4000, 1000], largest=1, close_handles="auto", uv={"size": 256}, maps="normals"
+        )
+        self.assertEqual(levels.maps["normals"].shape, (256, 256, 4))
+        self.assertGreater(levels[0].facts["baked"]["texels"], 10000)
+        self.assertEqual(levels[0].facts["atlas"]["size"], 256)
+        for level in levels:
+            self.assertEqual(level.attributes["texture_coordinates"].shape, (3 * len(level.triangles), 2))
+        flat = cw.extract(head, 300, largest=1, uv=True)
+        self.assertIn("texture_coordinates", flat.attributes)
 
     def test_an_extractor_gives_the_meshes_of_extract(self):
         ball = make_ball()

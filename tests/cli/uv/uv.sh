@@ -41,7 +41,7 @@ cubewright make torus -o f.nrrd --dims 64 -q
 cubewright extract f.nrrd --iso 0 -o full.ply -q
 cubewright uv t.ply --bake full.ply --atlas 256 -o n.glb --json n.json -q
 strings -n 4 n.glb | grep -o -e 'TANGENT' -e '"normalTexture":{"index":0}' -e 'image/png'
-sed -n -e '/"normal_map": {/,/}/p' n.json
+sed -n -e '/"maps": {/,/}/p' n.json
 for t in 1 4; do cubewright uv t.ply --bake full.ply --atlas 256 -o n$t.glb --name n -t $t -q; done
 cmp n1.glb n4.glb && echo "same"
 cubewright uv t.ply --bake full.ply -o n.obj

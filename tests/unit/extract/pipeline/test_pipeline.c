@@ -261,6 +261,102 @@ static void levels_are_given_away_one_by_one(void **state)
     cw_volume_free(&volume);
 }
 
+/* Surfaces with a normal map, as a sink receives them. */
+typedef struct taken_maps {
+    size_t count;
+    cw_mesh mesh[2]; /* owned: the levels */
+    cw_image map;    /* a copy: that of level 0 */
+    bool shared;     /* later levels had the same */
+} taken_maps;
+
+static cw_status take_maps(void *user, cw_pipeline_surface *surface,
+                           const cw_pipeline_facts *facts, cw_error *err)
+{
+    taken_maps *t = user;
+    const cw_image *map = &surface->maps[CW_MAP_NORMALS];
+    assert_non_null(surface->full);
+    assert_true(surface->full->triangle_count > surface->mesh->triangle_count);
+    assert_int_equal(facts->atlas.size, map->width);
+    if (surface->level == 0) {
+        assert_true(facts->baked.texels > 0);
+        assert_ok(cw_image_alloc(&t->map, map->width, map->height, err), *err);
+        memcpy(t->map.pixels, map->pixels, 4 * map->width * map->height);
+    } else {
+        t->shared = memcmp(t->map.pixels, map->pixels, 4 * map->width * map->height) == 0;
+    }
+    t->mesh[t->count++] = *surface->mesh;
+    *surface->mesh = (cw_mesh){0};
+    return CW_OK;
+}
+
+/* One atlas and one map, made as by hand of level 0, and of the surface before it was simplified. */
+static void levels_share_an_atlas_and_a_map(void **state)
+{
+    (void)state;
+    cw_volume volume = make_noisy();
+    const size_t counts[2] = {1500, 900};
+    const cw_atlas_desc atlas = {.size = 256};
+    const cw_bake_desc bake = {.reach_mm = 10};
+    const cw_close_handles_desc handles = {.length_mm = 8};
+    cw_pipeline_desc d = {.extract = {.isovalue = ISO},
+                          .largest = 1,
+                          .close_handles = &handles,
+                          .lod = counts,
+                          .lod_count = 2,
+                          .atlas = &atlas,
+                          .bake = &bake};
+    taken_maps t = {0};
+    cw_error err = {0};
+    cw_pipeline_facts facts = {0};
+    if (!cw_simplify_available())
+        skip();
+    assert_ok(
+        cw_pipeline_run(&volume, NULL, &d, (cw_pipeline_sink){take_maps, &t}, &facts, &err),
+        err);
+    assert_int_equal(t.count, 2);
+    assert_true(t.shared);
+    cw_pipeline_desc full_desc = d;
+    full_desc.lod_count = 0;
+    full_desc.atlas = NULL;
+    full_desc.bake = NULL;
+    cw_mesh full = make_by_hand(&volume, &full_desc), low = {0};
+    cw_image map = {0};
+    const cw_bake_desc same = {.size = 256, .margin = facts.atlas.margin, .reach_mm = 10};
+    assert_ok(cw_simplify_levels(&full, &(cw_simplify_desc){0}, counts, 1, &low, NULL, &err),
+              err);
+    assert_ok(cw_mesh_atlas(&low, &atlas, NULL, &err), err);
+    assert_ok(cw_bake_normals(&low, &full, &same, &map, NULL, &err), err);
+    test_assert_same_mesh(&low, &t.mesh[0]);
+    assert_memory_equal(map.pixels, t.map.pixels, 4 * 256 * 256);
+    for (size_t n = 0; n < 2; n++) {
+        assert_non_null(cw_mesh_attribute_find(&t.mesh[n], CW_TEXTURE_COORDINATES));
+        cw_mesh_free(&t.mesh[n]);
+    }
+    cw_image_free(&t.map);
+    cw_image_free(&map);
+    cw_mesh_free(&full);
+    cw_mesh_free(&low);
+    cw_volume_free(&volume);
+}
+
+static void maps_need_an_atlas_and_fewer_triangles(void **state)
+{
+    (void)state;
+    cw_volume volume = make_noisy();
+    const cw_atlas_desc atlas = {0};
+    const cw_bake_desc bake = {0};
+    cw_pipeline_desc d = {.extract = {.isovalue = ISO}, .atlas = &atlas, .bake = &bake};
+    taken_maps t = {0};
+    cw_error err = {0};
+    cw_mesh mesh;
+    assert_fails(
+        cw_pipeline_run(&volume, NULL, &d, (cw_pipeline_sink){take_maps, &t}, NULL, &err),
+        CW_ERR_ARGUMENT, "maps are those of a surface before simplify or lod", err);
+    assert_fails(cw_pipeline_mesh(&volume, NULL, &d, &mesh, NULL, &err), CW_ERR_ARGUMENT,
+                 "maps need the sink", err);
+    cw_volume_free(&volume);
+}
+
 /* The stages that ran, in their order. */
 typedef struct watched {
     cw_stage stages[CW_STAGE_COUNT];
@@ -365,6 +461,8 @@ static void labels_are_simplified_together_and_given_away_apart(void **state)
 
 /* --- rules ---------------------------------------------------------------------------------- */
 
+enum { TEXTURE = 1u << CW_STAGE_ATLAS | 1u << CW_STAGE_MAPS };
+
 /* Stages that a source excludes, by themselves. */
 static const struct excluded {
     cw_surface_source source;
@@ -374,15 +472,16 @@ static const struct excluded {
     {CW_SOURCE_SLICES, 1u << CW_STAGE_VIEWS | 1u << CW_STAGE_LARGEST |
                            1u << CW_STAGE_FILL_VOIDS | 1u << CW_STAGE_HANDLES |
                            1u << CW_STAGE_SMOOTH | 1u << CW_STAGE_CUT | 1u << CW_STAGE_CULL |
-                           1u << CW_STAGE_LOD | 1u << CW_STAGE_COLOR},
+                           1u << CW_STAGE_LOD | 1u << CW_STAGE_COLOR | TEXTURE},
     {CW_SOURCE_PARTS, 1u << CW_STAGE_VIEWS | 1u << CW_STAGE_LARGEST |
                           1u << CW_STAGE_FILL_VOIDS | 1u << CW_STAGE_HANDLES |
                           1u << CW_STAGE_SMOOTH | 1u << CW_STAGE_CUT | 1u << CW_STAGE_CULL |
-                          1u << CW_STAGE_LOD | 1u << CW_STAGE_COLOR | 1u << CW_STAGE_SIMPLIFY},
+                          1u << CW_STAGE_LOD | 1u << CW_STAGE_COLOR | 1u << CW_STAGE_SIMPLIFY |
+                          TEXTURE},
     {CW_SOURCE_LABELS, 1u << CW_STAGE_VIEWS | 1u << CW_STAGE_MIN_VOLUME |
                            1u << CW_STAGE_LARGEST | 1u << CW_STAGE_FILL_VOIDS |
                            1u << CW_STAGE_HANDLES | 1u << CW_STAGE_SMOOTH | 1u << CW_STAGE_CUT |
-                           1u << CW_STAGE_CULL | 1u << CW_STAGE_COLOR},
+                           1u << CW_STAGE_CULL | 1u << CW_STAGE_COLOR | TEXTURE},
 };
 
 static void sources_exclude_what_they_cannot_give(void **state)
@@ -513,6 +612,8 @@ int main(void)
         cmocka_unit_test_setup_teardown(slices_give_the_surface_of_the_volume, test_folder_make,
                                         test_folder_remove),
         cmocka_unit_test(levels_are_given_away_one_by_one),
+        cmocka_unit_test(levels_share_an_atlas_and_a_map),
+        cmocka_unit_test(maps_need_an_atlas_and_fewer_triangles),
         cmocka_unit_test(stages_run_in_the_order_of_the_recipe),
         cmocka_unit_test(labels_are_simplified_together_and_given_away_apart),
         cmocka_unit_test(sources_exclude_what_they_cannot_give),

@@ -162,8 +162,19 @@ static void size_and_weight_are_looked_at(void **state)
     assert_null(judge(&k, CW_PROFILE_FEM, "size"));
     assert_int_equal(judge(&k, CW_PROFILE_WEB, "weight")->grade, CW_GRADE_OK);
     assert_int_equal(judge(&k, CW_PROFILE_WEB, "normals")->grade, CW_GRADE_WARN);
-    k.quality.triangles = CW_WEB_MAX_TRIANGLES + 1;
-    assert_int_equal(judge(&k, CW_PROFILE_WEB, "weight")->grade, CW_GRADE_WARN);
+    static const cw_profile drawn[] = {CW_PROFILE_WEB, CW_PROFILE_GAME, CW_PROFILE_MOBILE};
+    assert_null(cw_check_budget(CW_PROFILE_PRINT));
+    for (size_t n = 0; n < 3; n++) {
+        const cw_budget *budget = cw_check_budget(drawn[n]);
+        k.quality.triangles = budget->triangles[0];
+        k.findings.file_bytes = budget->file_bytes;
+        assert_int_equal(judge(&k, drawn[n], "weight")->grade, CW_GRADE_OK);
+        assert_int_equal(judge(&k, drawn[n], "file size")->grade, CW_GRADE_OK);
+        k.quality.triangles++;
+        k.findings.file_bytes++;
+        assert_int_equal(judge(&k, drawn[n], "weight")->grade, CW_GRADE_WARN);
+        assert_int_equal(judge(&k, drawn[n], "file size")->grade, CW_GRADE_WARN);
+    }
     k.quality = (cw_quality){0};
     assert_int_equal(judge(&k, CW_PROFILE_BASIC, "triangles")->grade, CW_GRADE_FAIL);
     forget(&k);

@@ -1,0 +1,203 @@
+/* Checks the options of texture coordinates and baked maps, and prints the facts on both. */
+#include "cli/assets/texture_options.h"
+
+#include "cli/framework/quantity.h"
+#include "core/base/status.h"
+
+#include <stdio.h>
+#include <string.h>
+
+/* Texels that find nothing, in percent, from which on it is worth a warning. */
+static const double MANY_MISSED = 1;
+
+/* --- as typed ------------------------------------------------------------------------------- */
+
+/* Returns the bit of a name with `length` characters; 0: it is none. */
+static unsigned find_map(const char *name, size_t length)
+{
+    for (int m = 0; m < CW_MAP_COUNT; m++) {
+        const char *known = cw_map_name((cw_map)m);
+        if (strlen(known) == length && memcmp(known, name, length) == 0)
+            return 1u << m;
+    }
+    return 0;
+}
+
+/* Reads the names of maps. Returns false at one that is none, which *bad then points to. */
+static bool parse_maps(const char *text, unsigned *maps, const char **bad)
+{
+    *maps = 0;
+    if (!text || strcmp(text, "none") == 0)
+        return true;
+    for (const char *at = text;; at++) {
+        const size_t length = strcspn(at, ",");
+        const unsigned map = find_map(at, length);
+        *bad = at;
+        if (!map)
+            return false;
+        *maps |= map;
+        at += length;
+        if (!*at)
+            return true;
+    }
+}
+
+unsigned cli_find_maps(const cli_texture_args *args)
+{
+    unsigned maps;
+    const char *bad;
+    return parse_maps(args->maps, &maps, &bad) ? maps : 0;
+}
+
+static cw_status check_maps(const cli_texture_args *args, const char *output,
+                            const char *format, cw_error *err)
+{
+    const cw_format *f = cw_mesh_format(output, format);
+    const char *bad;
+    unsigned maps;
+    char names[256] = "none";
+    for (int m = 0; m < CW_MAP_COUNT; m++) {
+        const size_t used = strlen(names);
+        snprintf(names + used, sizeof names - used, ", %s", cw_map_name((cw_map)m));
+    }
+    if (!parse_maps(args->maps, &maps, &bad))
+        return cwi_fail(err, CW_ERR_ARGUMENT, "--maps %s: '%.*s' is no map: expected %s",
+                        args->maps, (int)strcspn(bad, ","), bad, names);
+    if (maps && f && !(f->keeps & CW_KEEPS_PICTURES))
+        return cwi_fail(err, CW_ERR_ARGUMENT,
+                        "%s holds no maps; .glb and .gltf do, and --maps none makes none",
+                        f->name);
+    return CW_OK;
+}
+
+static bool is_given(size_t texels)
+{
+    return texels != SIZE_MAX;
+}
+
+static uint32_t texels_of(size_t texels)
+{
+    return is_given(texels) ? (uint32_t)texels : 0;
+}
+
+cw_status cli_check_texture(const cli_texture_args *args, const char *output,
+                            const char *format, cw_error *err)
+{
+    if (is_given(args->atlas) && (args->atlas < 64 || args->atlas > CW_ATLAS_MAX_SIZE))
+        return cwi_fail(err, CW_ERR_ARGUMENT, "--atlas %zu: expected 64 to %u", args->atlas,
+                        CW_ATLAS_MAX_SIZE);
+    if (is_given(args->margin) && (args->margin < 1 || args->margin > 64))
+        return cwi_fail(err, CW_ERR_ARGUMENT, "--margin %zu: expected 1 to 64", args->margin);
+    if (args->density.given && !(args->density.value > 0))
+        return cwi_fail(err, CW_ERR_ARGUMENT, "--texel-density %g: expected more than 0",
+                        args->density.value);
+    return check_maps(args, output, format, err);
+}
+
+cw_atlas_desc cli_atlas_desc(const cli_texture_args *args)
+{
+    return (cw_atlas_desc){.size = texels_of(args->atlas),
+                           .margin = texels_of(args->margin),
+                           .texels_per_mm = args->density.given ? args->density.value : 0};
+}
+
+cw_bake_desc cli_bake_desc(const cli_texture_args *args, double reach_mm)
+{
+    return (cw_bake_desc){.size = texels_of(args->atlas),
+                          .margin = texels_of(args->margin),
+                          .reach_mm = reach_mm,
+                          .maps = cli_find_maps(args)};
+}
+
+/* --- images --------------------------------------------------------------------------------- */
+
+cw_status cli_encode_maps(const cw_image *images, cli_maps *maps, cw_error *err)
+{
+    cw_texture *const targets[CW_MAP_COUNT] = {[CW_MAP_NORMALS] = &maps->textures.normal};
+    cw_status st = CW_OK;
+    for (int m = 0; m < CW_MAP_COUNT && st == CW_OK; m++) {
+        if (!images[m].pixels)
+            continue;
+        st = cw_image_encode(&images[m], false, &maps->bytes[m], &targets[m]->size, err);
+        targets[m]->bytes = maps->bytes[m];
+    }
+    return st;
+}
+
+void cli_free_maps(cli_maps *maps)
+{
+    for (int m = 0; m < CW_MAP_COUNT; m++)
+        cw_bytes_free(maps->bytes[m]);
+    *maps = (cli_maps){0};
+}
+
+/* --- facts ---------------------------------------------------------------------------------- */
+
+void cli_json_texture(cli_json *j, const cli_texture_args *args)
+{
+    if (is_given(args->atlas))
+        cli_json_count(j, "atlas", args->atlas);
+    if (is_given(args->margin))
+        cli_json_count(j, "margin", args->margin);
+    if (args->density.given)
+        cli_json_number(j, "texels_per_mm", args->density.value);
+    if (args->maps)
+        cli_json_text(j, "maps", args->maps);
+}
+
+void cli_json_atlas(cli_json *j, const cw_atlas_facts *f)
+{
+    cli_json_open(j, "atlas", '{');
+    cli_json_count(j, "size", f->size);
+    cli_json_count(j, "margin", f->margin);
+    cli_json_count(j, "charts", f->charts);
+    cli_json_count(j, "seams", f->seams);
+    cli_json_count(j, "vertices", f->vertices);
+    cli_json_number(j, "texels_per_mm", f->texels_per_mm);
+    cli_json_number(j, "stretch", f->stretch);
+    cli_json_number(j, "coverage", f->coverage);
+    cli_json_count(j, "flipped", f->flipped);
+    cli_json_close(j, '}');
+}
+
+void cli_json_maps(cli_json *j, const cw_bake_facts *f)
+{
+    cli_json_open(j, "maps", '{');
+    cli_json_number(j, "reach_mm", f->reach_mm);
+    cli_json_count(j, "texels", f->texels);
+    cli_json_count(j, "missed", f->missed);
+    cli_json_number(j, "max_mm", f->max_mm);
+    cli_json_number(j, "mean_mm", f->mean_mm);
+    cli_json_number(j, "mean_deg", f->mean_deg);
+    cli_json_close(j, '}');
+}
+
+void cli_atlas_text(const cw_atlas_facts *f, char text[CLI_TEXTURE_TEXT])
+{
+    snprintf(
+        text, CLI_TEXTURE_TEXT,
+        "%s chart%s, %s edges of seams, %s vertices with one coordinate each; %u x %u texels, "
+        "%.0f %% covered, %.3g for a mm; stretch %.3f",
+        cli_count(f->charts), f->charts == 1 ? "" : "s", cli_count(f->seams),
+        cli_count(f->vertices), f->size, f->size, 100 * f->coverage, f->texels_per_mm,
+        f->stretch);
+}
+
+static double missed_percent(const cw_bake_facts *f)
+{
+    return f->texels ? 100 * (double)f->missed / (double)f->texels : 0;
+}
+
+void cli_maps_text(const cw_bake_facts *f, const char *source, char text[CLI_TEXTURE_TEXT])
+{
+    snprintf(
+        text, CLI_TEXTURE_TEXT,
+        "normal map of %s, at most %.3g mm away, mean %.2g mm; %.2g %% of the texels missed",
+        source, f->max_mm, f->mean_mm, missed_percent(f));
+}
+
+double cli_find_missed(const cw_bake_facts *f)
+{
+    const double percent = missed_percent(f);
+    return percent > MANY_MISSED ? percent : 0;
+}
