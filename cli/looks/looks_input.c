@@ -81,6 +81,8 @@ cw_status cli_looks_find(const cli_mesh *mesh, bool is_reference, const char *re
     cw_status st = CW_OK;
     if (format_keeps_pictures(mesh->file.format))
         st = cli_read_parts_again(mesh, is_reference, reader, input, &looks->parts, err);
+    if (st == CW_OK && looks->parts.parts && !has_pictures(&looks->parts))
+        st = cli_glb_maps_read(&looks->parts, &looks->glb, err);
     if (st == CW_OK && !has_pictures(&looks->parts))
         cli_free_mesh(&looks->parts);
     const cw_part *parts = looks->parts.parts ? looks->parts.parts : &whole;
@@ -104,5 +106,6 @@ void cli_looks_free(cli_looks *looks)
     cwi_free(looks->maps);
     cwi_free(looks->surfaces);
     cli_free_mesh(&looks->parts);
+    cli_glb_maps_free(&looks->glb);
     *looks = (cli_looks){0};
 }

@@ -2,7 +2,7 @@
 #ifndef CLI_LOOKS_LOOKS_INPUT_H
 #define CLI_LOOKS_LOOKS_INPUT_H
 
-#include "cli/inputs/mesh_input.h"
+#include "cli/looks/glb_maps.h"
 
 #include <cubewright/appearance.h>
 
@@ -10,6 +10,7 @@ typedef struct cli_looks {
     cw_surface_look *surfaces; /* count of them; owned */
     size_t count;
     cli_mesh parts; /* owned; empty where the merged mesh serves */
+    cli_glb_maps glb;
     cw_image *maps; /* owned; of each surface */
     bool has_maps;
 } cli_looks;
