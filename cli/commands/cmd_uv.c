@@ -4,6 +4,7 @@
 #include "cli/commands/mesh_command.h"
 #include "cli/framework/console.h"
 #include "cli/framework/quantity.h"
+#include "cli/looks/looks_facts.h"
 #include "core/base/status.h"
 #include "core/mesh/mesh.h"
 #include "core/mesh/mesh_attributes.h"
@@ -14,6 +15,7 @@
 typedef struct uv_args {
     cli_mesh_args mesh;
     cli_texture_args texture;
+    const char *looks;
 } uv_args;
 
 typedef struct uv_state {
@@ -22,6 +24,8 @@ typedef struct uv_state {
     double reach_mm; /* 0: the default */
     cw_bake_facts baked;
     cli_maps maps;
+    cli_looks_limit limit;
+    cw_appearance looks, bare_looks; /* of --looks: with maps, and without */
 } uv_state;
 
 static const uv_args *args_of(const cli_mesh_run *r)
@@ -44,6 +48,9 @@ static const cli_option options[] = {
     {"reach", 0, CLI_LENGTH, "L",
      "How far the mesh of --bake may be (4% of the box's diagonal)",
      offsetof(uv_args, texture) + offsetof(cli_texture_args, reach)},
+    {"looks", 0, CLI_TEXT, "none/N/NdB",
+     "Compare the looks with the mesh of --bake; limits: mean CIEDE2000 of N, PSNR of NdB",
+     offsetof(uv_args, looks)},
     CLI_HEADED("Parts"),
     CLI_MESH_MERGE,
     CLI_MESH_ORIENT,
@@ -52,7 +59,7 @@ static const cli_option options[] = {
 
 static const cli_rule rules[] = {
     {NULL, CLI_NEEDS, "output"},
-    {"maps reach", CLI_NEEDS, "bake"},
+    {"maps reach looks", CLI_NEEDS, "bake"},
     CLI_COMPRESS_RULES,
 };
 
@@ -61,6 +68,8 @@ static const cli_rule rules[] = {
 static void put_params(cli_json *j, const cli_mesh_run *r, const cli_made *made)
 {
     cli_json_texture(j, &args_of(r)->texture);
+    if (args_of(r)->looks)
+        cli_json_text(j, "looks", args_of(r)->looks);
     cli_json_bool(j, "merge", r->args->merge);
     cli_json_bool(j, "orient", r->args->orient);
     cli_json_count(j, "merged_vertices", r->pieces.merged);
@@ -77,6 +86,8 @@ static void put_facts(cli_json *j, const cli_mesh_run *r)
     cli_json_atlas(j, &s->facts);
     if (r->args->source)
         cli_json_maps(j, &s->baked);
+    if (args_of(r)->looks)
+        cli_looks_json(j, &s->looks, &s->bare_looks);
 }
 
 /* Says how the maps came out. */
@@ -96,6 +107,15 @@ static void report_bake(cli_mesh_run *r)
             missed, s->baked.reach_mm, s->full.path);
 }
 
+static void report_looks(cli_mesh_run *r)
+{
+    const uv_state *s = r->state;
+    const size_t used = strlen(r->found);
+    char text[CLI_LOOKS_TEXT];
+    cli_looks_text(&s->looks, &s->bare_looks, text);
+    snprintf(r->found + used, sizeof r->found - used, "; looks: %s", text);
+}
+
 static cw_status report_facts(cli_mesh_run *r, cw_error *err)
 {
     const cw_atlas_facts *f = &((const uv_state *)r->state)->facts;
@@ -104,6 +124,8 @@ static cw_status report_facts(cli_mesh_run *r, cw_error *err)
     snprintf(r->found, sizeof r->found, "; %s", text);
     if (r->args->source)
         report_bake(r);
+    if (args_of(r)->looks)
+        report_looks(r);
     if (f->flipped)
         cli_report_warn(&r->report, "single precision turned %s triangles over: --atlas %u",
                         cli_count(f->flipped), 2 * f->size);
@@ -116,7 +138,10 @@ static cw_status check_values(cli_mesh_run *r, cw_error *err)
     cli_texture_args texture = args_of(r)->texture;
     if (r->args->source && !texture.maps)
         texture.maps = "normals";
-    return cli_check_texture(&texture, r->args->output, r->args->written.format, err);
+    cw_status st = cli_check_texture(&texture, r->args->output, r->args->written.format, err);
+    if (st == CW_OK && args_of(r)->looks)
+        st = cli_looks_parse(args_of(r)->looks, &((uv_state *)r->state)->limit, err);
+    return st;
 }
 
 /* --- work --------------------------------------------------------------------------------- */
@@ -196,6 +221,20 @@ static cw_status join_finished(cli_pieces *p, cw_mesh *all, cw_error *err)
     return st;
 }
 
+/* Compares the mesh and its normal map with the full mesh. */
+static cw_status compare_looks(cli_mesh_run *r, const cw_mesh *all, const cw_image *normals,
+                               cw_error *err)
+{
+    uv_state *s = r->state;
+    const cw_surface_look full = {.mesh = &s->full.mesh},
+                          low = {.mesh = all, .normal_map = normals->pixels ? normals : NULL};
+    const cw_appearance_desc desc = {.threads = r->threads,
+                                     .progress = cli_progress(8, "view")};
+    cw_status st =
+        cw_appearance_measure(&full, 1, &low, 1, &desc, &s->looks, &s->bare_looks, err);
+    return st == CW_OK ? cli_looks_hold(&s->limit, &s->looks, err) : st;
+}
+
 /* Bakes the maps of all pieces. Normals that the full mesh lacks are made once its corners are
  * joined. */
 static cw_status bake(cli_mesh_run *r, cw_error *err)
@@ -211,11 +250,15 @@ static cw_status bake(cli_mesh_run *r, cw_error *err)
     cw_status st = join_finished(&r->pieces, &all, err);
     if (st == CW_OK && !s->full.mesh.normals)
         st = cw_mesh_weld(&s->full.mesh, NULL, err);
+    if (st == CW_OK && !s->full.mesh.normals)
+        st = cw_mesh_normals(&s->full.mesh, err);
     if (st == CW_OK)
         st = cw_bake_normals(&all, &s->full.mesh, &desc, &images[CW_MAP_NORMALS], &s->baked,
                              err);
     if (st == CW_OK)
         st = cli_encode_maps(images, &s->maps, err);
+    if (st == CW_OK && args_of(r)->looks)
+        st = compare_looks(r, &all, &images[CW_MAP_NORMALS], err);
     r->pieces.textures = &s->maps.textures;
     for (int m = 0; m < CW_MAP_COUNT; m++)
         cw_image_free(&images[m]);

@@ -47,6 +47,29 @@ static const char *psnr_text(double psnr_db, char text[16])
     return text;
 }
 
+cw_status cli_looks_hold(const cli_looks_limit *limit, const cw_appearance *looks,
+                         cw_error *err)
+{
+    const cw_look_difference *all = &looks->all;
+    if (limit->max_delta_e > 0 && all->delta_e > limit->max_delta_e)
+        return cwi_fail(err, CW_ERR_CHECK, "CIEDE2000 %.3g; --looks allows at most %g",
+                        all->delta_e, limit->max_delta_e);
+    if (limit->min_psnr_db > 0 && all->psnr_db < limit->min_psnr_db)
+        return cwi_fail(err, CW_ERR_CHECK, "PSNR %.4g dB; --looks asks for at least %g dB",
+                        all->psnr_db, limit->min_psnr_db);
+    return CW_OK;
+}
+
+void cli_looks_text(const cw_appearance *with, const cw_appearance *without,
+                    char text[CLI_LOOKS_TEXT])
+{
+    char psnr[16], bare[40] = "";
+    if (without)
+        snprintf(bare, sizeof bare, " (%.2f without maps)", without->all.delta_e);
+    snprintf(text, CLI_LOOKS_TEXT, "PSNR %s, CIEDE2000 %.2f%s",
+             psnr_text(with->all.psnr_db, psnr), with->all.delta_e, bare);
+}
+
 static void print_line(const char *name, const cw_look_difference *d)
 {
     char all[16], both[16];

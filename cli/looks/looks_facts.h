@@ -16,6 +16,17 @@ typedef struct cli_looks_limit {
  * Returns CW_ERR_ARGUMENT for other texts. */
 CW_NODISCARD cw_status cli_looks_parse(const char *text, cli_looks_limit *limit, cw_error *err);
 
+/* Fails with CW_ERR_CHECK for looks that differ more than the limit allows, and says by how much. */
+CW_NODISCARD cw_status cli_looks_hold(const cli_looks_limit *limit, const cw_appearance *looks,
+                                      cw_error *err);
+
+enum { CLI_LOOKS_TEXT = 120 };
+
+/* Prints the figures in words.
+ * without  as below */
+void cli_looks_text(const cw_appearance *with, const cw_appearance *without,
+                    char text[CLI_LOOKS_TEXT]);
+
 /* Prints a table: a line with maps, one without them if there are some, and the worst view.
  * without  NULL: there are no maps */
 void cli_looks_print(const cw_appearance *with, const cw_appearance *without);

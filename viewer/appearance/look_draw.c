@@ -43,13 +43,20 @@ typedef struct drawing {
     uint8_t *rgba;
 } drawing;
 
-/* A triangle ready to be drawn and shaded. */
+/* A triangle ready to be shaded. What varies over it, times its closeness, is a function of x, y and 1: so
+ * are, up to a common factor, normals and texture coordinates. */
 typedef struct facet {
     uint32_t triangle;
     cwi_screen_facet on_screen;
     const cwi_look_part *part;
-    double normal[3]; /* its own */
+    double own_normal[3];
+    double closeness[3], normal[3][3], uv[2][3];
 } facet;
+
+static double value_at(const double function[3], double x, double y)
+{
+    return function[0] * x + (function[1] * y + function[2]);
+}
 
 /* --- projection --------------------------------------------------------------------------- */
 
@@ -202,17 +209,30 @@ static void draw_triangle(const drawing *d, uint32_t t, int first, int last, hit
 
 /* --- pixels ------------------------------------------------------------------------------- */
 
+/* Adds a value at a corner to a function of x, y and 1. */
+static void add_corner(const cwi_screen_facet *f, int corner, double value, double function[3])
+{
+    for (int k = 0; k < 3; k++)
+        function[k] += f->edge[corner][k] * f->weight[corner] * value;
+}
+
 static void set_up_facet(const drawing *d, uint32_t triangle, facet *f)
 {
     const cwi_look_model *m = d->model;
     const uint32_t *v = m->triangles[triangle];
     cwi_screen_point p[3];
     corners_of(d, triangle, p);
-    f->triangle = triangle;
-    f->part = cwi_look_part_of(m, triangle);
+    *f = (facet){.triangle = triangle, .part = cwi_look_part_of(m, triangle)};
     cwi_facet_set_up(&d->screen, p, &f->on_screen);
-    cwi_facet_normal(m->positions[v[0]], m->positions[v[1]], m->positions[v[2]], f->normal);
-    cwi_to_unit(f->normal);
+    cwi_facet_normal(m->positions[v[0]], m->positions[v[1]], m->positions[v[2]], f->own_normal);
+    cwi_to_unit(f->own_normal);
+    for (int c = 0; c < 3; c++) {
+        add_corner(&f->on_screen, c, 1, f->closeness);
+        for (int a = 0; a < 3 && !f->part->is_flat; a++)
+            add_corner(&f->on_screen, c, (double)m->normals[v[c]][a], f->normal[a]);
+        for (int a = 0; a < 2 && m->uv; a++)
+            add_corner(&f->on_screen, c, (double)m->uv[v[c]][a], f->uv[a]);
+    }
 }
 
 static void weights_at(const facet *f, double x, double y, double weights[3])
@@ -222,25 +242,20 @@ static void weights_at(const facet *f, double x, double y, double weights[3])
     cwi_facet_weights(&f->on_screen, e, weights);
 }
 
-/* Blends the vertices' normals. */
-static void normal_at(const drawing *d, const facet *f, const double weights[3], double n[3])
+static void normal_at(const facet *f, double x, double y, double n[3])
 {
-    const uint32_t *v = d->model->triangles[f->triangle];
-    memset(n, 0, 3 * sizeof *n);
-    for (int c = 0; c < 3 && !f->part->is_flat; c++)
-        for (int a = 0; a < 3; a++)
-            n[a] += weights[c] * (double)d->model->normals[v[c]][a];
+    const double side = value_at(f->closeness, x, y) < 0 ? -1 : 1; /* beyond the horizon */
+    for (int a = 0; a < 3; a++)
+        n[a] = side * value_at(f->normal[a], x, y);
     if (!cwi_to_unit(n))
-        memcpy(n, f->normal, 3 * sizeof *n);
+        memcpy(n, f->own_normal, 3 * sizeof *n);
 }
 
-static void uv_at(const drawing *d, const facet *f, const double weights[3], double uv[2])
+static void uv_at(const facet *f, double x, double y, double uv[2])
 {
-    const uint32_t *v = d->model->triangles[f->triangle];
+    const double closeness = value_at(f->closeness, x, y);
     for (int a = 0; a < 2; a++)
-        uv[a] = weights[0] * (double)d->model->uv[v[0]][a] +
-                weights[1] * (double)d->model->uv[v[1]][a] +
-                weights[2] * (double)d->model->uv[v[2]][a];
+        uv[a] = value_at(f->uv[a], x, y) / closeness;
 }
 
 /* Turns a normal by a texel of the normal map, in the frame that viewers have here: each direction
@@ -284,30 +299,28 @@ static double find_bend(const drawing *d, const double here[3], const double rig
     return bend;
 }
 
-/* Applies maps, and finds how the normal changes: among 2 x 2 pixels, from the lower left one to its
- * neighbours, as GPUs have it. */
-static void look_around(const drawing *d, const facet *f, int x, int y, const double weights[3],
-                        cwi_look_point *p)
+/* The lower left one of 2 x 2 pixels, from which GPUs find how values change. */
+typedef struct quad {
+    double x, y; /* its middle */
+} quad;
+
+static quad quad_of(const drawing *d, int x, int y)
 {
-    const bool maps = !d->picture->without_maps &&
-                      (f->part->normal_map.count > 0 || f->part->color_map.count > 0);
     const int bottom = (d->screen.height - 1 - y) & ~1;
-    const double left = (x & ~1) + 0.5, low = d->screen.height - 1 - bottom + 0.5;
-    double around[3][3], normal[3][3], texel[3];
-    weights_at(f, left, low, around[0]);
-    weights_at(f, left + 1, low, around[1]);
-    weights_at(f, left, low - 1, around[2]);
-    for (int n = 0; n < 3; n++)
-        normal_at(d, f, around[n], normal[n]);
-    p->bend = f->part->is_flat ? 0 : find_bend(d, normal[0], normal[1], normal[2]);
-    if (!maps)
-        return;
+    return (quad){(x & ~1) + 0.5, d->screen.height - 1 - bottom + 0.5};
+}
+
+/* Turns the normal and colours the point by the maps. */
+static void apply_maps(const drawing *d, const facet *f, double x, double y, quad q,
+                       cwi_look_point *p)
+{
     cwi_look_place place;
-    double start[2];
-    uv_at(d, f, weights, place.uv);
-    uv_at(d, f, around[0], start);
-    uv_at(d, f, around[1], place.dx);
-    uv_at(d, f, around[2], place.dy);
+    double start[2], weights[3], texel[3];
+    weights_at(f, x, y, weights);
+    uv_at(f, x, y, place.uv);
+    uv_at(f, q.x, q.y, start);
+    uv_at(f, q.x + 1, q.y, place.dx);
+    uv_at(f, q.x, q.y - 1, place.dy);
     for (int a = 0; a < 2; a++) {
         place.dx[a] -= start[a];
         place.dy[a] -= start[a];
@@ -323,11 +336,13 @@ static void look_around(const drawing *d, const facet *f, int x, int y, const do
     }
 }
 
-static void find_color(const drawing *d, const facet *f, const double weights[3],
-                       double color[3])
+static void find_color(const drawing *d, const facet *f, double x, double y, double color[3])
 {
     const cwi_look_model *m = d->model;
     const uint32_t *v = m->triangles[f->triangle];
+    double weights[3];
+    if (m->colors)
+        weights_at(f, x, y, weights);
     for (int a = 0; a < 3; a++) {
         color[a] = m->face_colors ? (double)m->face_colors[f->triangle][a] : 1;
         if (m->colors)
@@ -337,15 +352,26 @@ static void find_color(const drawing *d, const facet *f, const double weights[3]
     }
 }
 
-static void shade_pixel(const drawing *d, const facet *f, int x, int y, uint8_t rgb[3])
+static void shade_pixel(const drawing *d, const facet *f, int column, int row, uint8_t rgb[3])
 {
-    double weights[3];
-    cwi_look_point p;
-    weights_at(f, x + 0.5, y + 0.5, weights);
-    normal_at(d, f, weights, p.normal);
-    find_color(d, f, weights, p.color);
-    look_around(d, f, x, y, weights, &p);
-    cwi_screen_to_eye(&d->screen, x + 0.5, y + 0.5, p.to_eye);
+    const double x = column + 0.5, y = row + 0.5;
+    const quad q = quad_of(d, column, row);
+    cwi_look_point p = {.bend = 0};
+    find_color(d, f, x, y, p.color);
+    if (f->part->is_flat) {
+        memcpy(p.normal, f->own_normal, sizeof p.normal);
+    } else {
+        double around[3][3];
+        normal_at(f, x, y, p.normal);
+        normal_at(f, q.x, q.y, around[0]);
+        normal_at(f, q.x + 1, q.y, around[1]);
+        normal_at(f, q.x, q.y - 1, around[2]);
+        p.bend = find_bend(d, around[0], around[1], around[2]);
+    }
+    if (!d->picture->without_maps &&
+        (f->part->normal_map.count > 0 || f->part->color_map.count > 0))
+        apply_maps(d, f, x, y, q, &p);
+    cwi_screen_to_eye(&d->screen, x, y, p.to_eye);
     cwi_look_shade(&d->light, &p, rgb);
 }
 
