@@ -7,10 +7,14 @@
 #include "core/base/memory.h"
 #include "core/base/status.h"
 #include "core/geometry/box.h"
+#include "core/geometry/vec3.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <sys/stat.h>
+
+/* Between the middles of two boxes, as a share of the diagonal: then a mesh was moved. */
+static const double FAR_APART = 0.05;
 
 double cli_check_least_mm3(const cli_check_run *s)
 {
@@ -176,6 +180,21 @@ static cw_status compare_with_reference(cli_check_run *s, cw_error *err)
     return CW_OK;
 }
 
+/* Says when the mesh lies elsewhere than the reference, as after a change of its pivot. */
+static void say_apart(const cli_check_run *s)
+{
+    double low[2][3], high[2][3], middle[2][3];
+    cw_mesh_bounds(&s->mesh.mesh, low[0], high[0]);
+    cw_mesh_bounds(&s->reference.mesh, low[1], high[1]);
+    for (int n = 0; n < 2; n++)
+        cwi_lerp(low[n], high[n], 0.5, middle[n]);
+    const double apart = cwi_distance(middle[0], middle[1]);
+    if (apart > FAR_APART * cwi_box_diagonal(low[1], high[1]))
+        cli_say("%s: the middle of its box is %.3g mm from that of %s: --looks compares them "
+                "where they lie",
+                s->mesh.path, apart, s->reference.path);
+}
+
 /* Compares pictures of the mesh and of the reference. */
 static cw_status compare_looks(cli_check_run *s, cw_error *err)
 {
@@ -183,6 +202,7 @@ static cw_status compare_looks(cli_check_run *s, cw_error *err)
     const cw_appearance_desc desc = {.threads = (int)args->input.threads,
                                      .progress = cli_progress(8, "view")};
     cli_looks mesh = {0}, reference = {0};
+    say_apart(s);
     cli_report_begin(&s->report);
     cw_status st = cli_looks_find(&s->mesh, false, args->mesh_reader, &args->input, &mesh, err);
     if (st == CW_OK)

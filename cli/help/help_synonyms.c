@@ -24,7 +24,8 @@ const cli_synonym cli_synonyms[] = {
     {"uv|unwrap|texture|texcoord|chart|lightmap|bake|normal map|game", "uv",
      "uv|--atlas|--texel-density|--margin|--bake",
      "'uv' gives a mesh texture coordinates, for GLB and OBJ, and a normal map, for GLB."},
-    {"look|appearance|psnr|ciede|delta e|visual|image difference|similar", NULL, "--looks|--bake",
+    {"look|appearance|psnr|ciede|delta e|visual|image difference|similar", NULL,
+     "--looks|--bake",
      "'check --reference MESH --looks none' measures how alike two meshes look: PSNR and CIEDE2000 of eight "
      "views, with normal maps and without."},
     {"denois|despeckl", NULL, "--denoise|smooth|--min-volume|--drop-components",

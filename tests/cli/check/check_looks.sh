@@ -20,6 +20,10 @@ cubewright check low.ply --looks none -q || echo "exit $?"
 cubewright convert low.ply -o flat.stl -q
 cubewright check flat.stl --reference full.ply --looks none 2>&1 | grep -e flat, -e beside
 
+# elsewhere: said, and seen
+cubewright convert low.ply --pivot base -o moved.ply -q
+cubewright check moved.ply --reference full.ply --looks none 2>&1 | grep -e 'middle' -e beside
+
 # a normal map: as uv measures it, and as check reads it from the file
 cubewright uv low.ply --bake full.ply --atlas 512 --looks 4 --json uv.json -o low.glb 2>/dev/null | grep -o 'looks: .* without maps)'
 cubewright check low.glb --reference full.ply --looks 4 --json a.json -t 1 2>/dev/null | grep -e 'looks,' -e maps -e worst
