@@ -3,6 +3,7 @@
 #include "core/base/status.h"
 #include "formats/bytes/file_pattern.h"
 #include "formats/format_lookup.h"
+#include "formats/mesh/picture_store.h"
 #include "formats/mesh/place_parts.h"
 #include "formats/volume/frame_claim.h"
 #include "formats/volume/volume_reader.h"
@@ -33,11 +34,14 @@ static void drop_broken_normals(cw_mesh *mesh)
     mesh->normals = NULL;
 }
 
-/* Returns the number of marks; the last one may have no triangles. */
+/* Returns the number of objects; the last one may have no triangles. */
 static size_t count_marks(const cwi_marks *marks, const cw_mesh *mesh)
 {
-    const size_t n = marks->count;
-    return n && marks->items[n - 1].triangle == mesh->triangle_count ? n - 1 : n;
+    size_t count = 0;
+    for (size_t n = 0; n < marks->count; n++)
+        count += marks->items[n].triangle < mesh->triangle_count &&
+                 (n == 0 || marks->items[n].object != marks->items[n - 1].object);
+    return count;
 }
 
 static cw_status read_open_file(cwi_mesh_input *in, cw_mesh *mesh, cw_mesh_file *metadata,
@@ -72,6 +76,8 @@ static cw_status read_file(const char *path, cwi_mesh_input *in, cw_mesh *mesh,
     if (st == CW_OK)
         st = read_open_file(in, mesh, metadata, err);
     cwi_input_close(&in->file);
+    cwi_say_left_out(metadata, in->pictures.is_missing,
+                     "pictures of missing files or outside the folder");
     if (st != CW_OK)
         cw_mesh_free(mesh);
     return st;
@@ -82,6 +88,7 @@ static void free_marks(cwi_mesh_input *in)
     cwi_free(in->marks.items);
     cwi_free(in->marks.names);
     cw_label_table_free(&in->labels);
+    cwi_pictures_free(&in->pictures);
 }
 
 cw_status cw_mesh_read(const char *path, const cw_mesh_read_desc *desc, cw_mesh *mesh,
@@ -105,7 +112,7 @@ cw_status cw_parts_read(const char *path, const cw_mesh_read_desc *desc, cw_part
 {
     CWI_REQUIRE(err, path, parts, count);
     CWI_REQUIRE_VERSION(err, desc, 0);
-    cwi_mesh_input in = {.desc = resolve_desc(desc)};
+    cwi_mesh_input in = {.desc = resolve_desc(desc), .pictures.is_wanted = true};
     cw_mesh_file metadata = {0};
     cw_mesh mesh;
     *parts = NULL;

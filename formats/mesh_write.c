@@ -1,6 +1,7 @@
 /* Writes meshes: finds the writer, checks the request, and measures the loss of a file. */
 #include <cubewright/formats.h>
 
+#include "core/base/memory.h"
 #include "core/base/status.h"
 #include "core/base/temporary_name.h"
 #include "formats/bytes/file_pattern.h"
@@ -213,6 +214,11 @@ static cw_status open_output(const char *path, const cwi_format_driver *f,
 
 static void abort_output(cwi_mesh_output *out)
 {
+    for (size_t n = 0; n < out->picture_count; n++)
+        cwi_outfile_abort(&out->pictures[n]);
+    cwi_free(out->pictures);
+    out->pictures = NULL;
+    out->picture_count = 0;
     cwi_outfile_abort(&out->side);
     cwi_outfile_abort(&out->file);
     cwi_outfolder_abort(&out->folder);
@@ -260,6 +266,8 @@ static cw_status ask_consent(const cw_write_consent *consent, cwi_mesh_output *o
                              cw_error *err)
 {
     cw_status st = out->side ? cwi_outfile_finish(out->side, err) : CW_OK;
+    for (size_t n = 0; n < out->picture_count && st == CW_OK; n++)
+        st = cwi_outfile_finish(out->pictures[n], err);
     if (st == CW_OK && out->file)
         st = cwi_outfile_finish(out->file, err);
     return st == CW_OK ? consent->ask(consent->user, err) : st;
@@ -275,6 +283,8 @@ static cw_status write_parts(const char *path, const cwi_parts *parts,
         st = f->write.write(parts, out, err);
     if (st == CW_OK && consent)
         st = ask_consent(consent, out, err);
+    for (size_t n = 0; n < out->picture_count && st == CW_OK; n++)
+        st = cwi_outfile_commit(&out->pictures[n], err);
     if (st == CW_OK && out->side)
         st = cwi_outfile_commit(&out->side, err);
     if (st == CW_OK)
@@ -418,6 +428,16 @@ static size_t count_rounded(const cwi_parts *placed, int bits)
     return count;
 }
 
+/* Returns the flags of what textures hold. */
+static unsigned pictures_of(const cw_textures *set)
+{
+    if (!set)
+        return 0;
+    return (set->color.bytes || set->normal.bytes || set->emissive.bytes ? CW_KEEPS_PICTURES
+                                                                         : 0u) |
+           (set->metallic_roughness.bytes || set->occlusion.bytes ? CW_KEEPS_MATERIALS : 0u);
+}
+
 static unsigned find_dropped(const cw_part *parts, size_t count, const cwi_parts *placed,
                              const cwi_format_driver *f, const cw_write_loss *loss)
 {
@@ -425,9 +445,10 @@ static unsigned find_dropped(const cw_part *parts, size_t count, const cwi_parts
     unsigned had = CW_KEEPS_SHARING | (placed->count > 1 ? CW_KEEPS_PARTS : 0u);
     unsigned has = keeps & (CW_KEEPS_SHARING | CW_KEEPS_PARTS | CW_KEEPS_AFFINE);
     for (size_t i = 0; i < count; i++)
-        had |= parts[i].textures ? CW_KEEPS_PICTURES : 0u;
+        had |= pictures_of(parts[i].textures);
     for (size_t i = 0; i < placed->count; i++)
-        has |= placed->items[i].textures ? CW_KEEPS_PICTURES : 0u;
+        has |=
+            placed->items[i].textures ? keeps & (CW_KEEPS_PICTURES | CW_KEEPS_MATERIALS) : 0u;
     for (size_t i = 0; i < count; i++)
         had |= parts[i].spool ? cwi_spool_arrays(parts[i].spool) : cwi_arrays_of(parts[i].mesh);
     for (size_t i = 0; i < placed->count; i++) {

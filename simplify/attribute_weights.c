@@ -9,7 +9,8 @@
 #include <math.h>
 
 enum { NORMAL = 3, COLOR = 4, SCALAR = 1 };
-_Static_assert(NORMAL + COLOR + SCALAR <= CWI_MAX_ATTRIBUTES, "room for all of them");
+_Static_assert(NORMAL + COLOR + SCALAR + CWI_TEXTURE_ATTRIBUTES <= CWI_MAX_ATTRIBUTES,
+               "room for all of them");
 
 size_t cwi_attributes_count(const cw_simplify_desc *d)
 {

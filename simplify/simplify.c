@@ -5,8 +5,11 @@
 #include "core/base/memory.h"
 #include "core/base/module.h"
 #include "core/base/status.h"
+#include "core/geometry/triangle.h"
+#include "core/geometry/vec3.h"
 #include "core/mesh/attribute_transfer.h"
 #include "core/mesh/mesh.h"
+#include "core/texture/split_seams.h"
 #include "simplify/attribute_weights.h"
 #include "simplify/blocks/block_passes.h"
 #include "simplify/blocks/partition.h"
@@ -65,24 +68,53 @@ static cw_status scale_mesh(const cw_mesh *mesh, double *scale, cw_mesh *scaled,
 static cw_status weigh_attributes(const cw_mesh *m, const cw_simplify_desc *d,
                                   cwi_mesh_block *w, cw_error *err)
 {
-    w->attributes = cwi_attributes_count(d);
-    if (!w->attributes)
+    const size_t count = cwi_attributes_count(d);
+    w->attributes = count + (w->texture ? CWI_TEXTURE_ATTRIBUTES : 0);
+    if (!count)
         return CW_OK;
-    w->values = cwi_alloc_array(w->attributes * w->vertices, sizeof *w->values);
+    w->values = cwi_alloc_array(count * w->vertices, sizeof *w->values);
     if (!w->values)
         return cwi_fail_memory(err);
     cwi_attributes_weigh(m, d, w->values);
     return CW_OK;
 }
 
+/* Copies the texture coordinates of a triangle's corners. */
+static void copy_texture(const cw_mesh *m, const cw_attribute *from, size_t t, float *to)
+{
+    const float *uv = from->data;
+    for (size_t c = 3 * t; c < 3 * t + 3; c++, to += 2)
+        memcpy(to, uv + 2 * (from->on == CW_ON_CORNERS ? c : m->triangles[c]), 2 * sizeof *uv);
+}
+
+/* Returns the length that the side of the texture has on the surface, in the mean; 0 without an area. */
+static float find_texture_scale(const cwi_mesh_block *w)
+{
+    double area = 0, in_texture = 0;
+    for (size_t t = 0; t < w->triangles && w->texture; t++) {
+        const uint32_t *v = w->corners + 3 * t;
+        const float *uv = w->texture + 6 * t;
+        double normal[3];
+        cwi_facet_normal(w->points + 3 * (size_t)v[0], w->points + 3 * (size_t)v[1],
+                         w->points + 3 * (size_t)v[2], normal);
+        area += cwi_length(normal);
+        in_texture += fabs(((double)uv[2] - (double)uv[0]) * ((double)uv[5] - (double)uv[1]) -
+                           ((double)uv[3] - (double)uv[1]) * ((double)uv[4] - (double)uv[0]));
+    }
+    return in_texture > 0 && isfinite(in_texture) ? (float)sqrt(area / in_texture) : 0;
+}
+
 /* Triangles that name a vertex twice are no part of any surface. */
 static cw_status begin_block(const cw_mesh *m, cwi_mesh_block *w, cw_error *err)
 {
+    const cw_attribute *uv = cwi_texture_of(m);
     w->vertices = m->vertex_count;
     w->points = cwi_alloc_array(3 * w->vertices, sizeof *w->points);
     w->global_ids = cwi_alloc_array(w->vertices, sizeof *w->global_ids);
     w->corners = cwi_alloc_array(3 * m->triangle_count, sizeof *w->corners);
-    if (!w->points || !w->global_ids || !w->corners)
+    if (uv)
+        w->texture = cwi_alloc_array(6 * m->triangle_count, sizeof *w->texture);
+    if (!w->points || !w->global_ids || !w->corners || !w->texture != !uv)
         return cwi_fail_memory(err);
     if (w->vertices)
         memcpy(w->points, m->positions, 3 * w->vertices * sizeof *w->points);
@@ -90,10 +122,14 @@ static cw_status begin_block(const cw_mesh *m, cwi_mesh_block *w, cw_error *err)
         w->global_ids[v] = (uint32_t)v;
     for (size_t t = 0; t < m->triangle_count; t++) {
         const uint32_t *c = m->triangles + 3 * t;
-        if (c[0] != c[1] && c[1] != c[2] && c[2] != c[0])
-            memcpy(w->corners + 3 * w->triangles++, c, 3 * sizeof *c);
+        if (c[0] == c[1] || c[1] == c[2] || c[2] == c[0])
+            continue;
+        if (uv)
+            copy_texture(m, uv, t, w->texture + 6 * w->triangles);
+        memcpy(w->corners + 3 * w->triangles++, c, 3 * sizeof *c);
     }
     cwi_block_span(w);
+    w->texture_scale = find_texture_scale(w);
     return CW_OK;
 }
 
@@ -108,6 +144,36 @@ cw_status cwi_finish_mesh(const cw_mesh *mesh, const cwi_mesh_block *from, cw_me
     memcpy(out->positions, from->points, 3 * from->vertices * sizeof *from->points);
     memcpy(out->triangles, from->corners, 3 * from->triangles * sizeof *from->corners);
     return CW_OK;
+}
+
+/* Gives a result the texture coordinates of its block: of corners, or of vertices as the input has them,
+ * where all corners at a vertex have the same. */
+static cw_status put_texture(const cw_mesh *mesh, const float *texture, cw_mesh *out,
+                             cw_error *err)
+{
+    const cw_attribute *from = cwi_texture_of(mesh);
+    float(*uv)[2];
+    if (!from)
+        return CW_OK;
+    cw_status st = cwi_texture_add(out, from->on, &uv, err);
+    for (size_t c = 0; c < 3 * out->triangle_count && st == CW_OK; c++)
+        memcpy(uv[from->on == CW_ON_CORNERS ? c : out->triangles[c]], texture + 2 * c,
+               sizeof *uv);
+    return st;
+}
+
+/* Gives a result the attributes of the input. texture: of the result's corners, NULL: none */
+static cw_status carry_attributes(const cw_mesh *mesh, const float *texture, int threads,
+                                  const cw_progress *progress, cw_mesh *out, cw_error *err)
+{
+    cw_mesh bare;
+    cw_status st = cwi_texture_hide(mesh, &bare, err);
+    if (st == CW_OK)
+        st = cwi_carry(&bare, NULL, threads, progress, out, err);
+    if (st == CW_OK)
+        st = put_texture(mesh, texture, out, err);
+    cwi_free(bare.attributes);
+    return st;
 }
 
 static cw_status run_passes(cwi_passes *p, const cw_mesh *mesh, const size_t *targets,
@@ -153,9 +219,9 @@ static cw_status simplify_levels(const cw_mesh *mesh, const cw_simplify_desc *de
         cwi_scale_points(left[n].points, left[n].vertices, 1 / scale, left[n].points);
         const size_t cut = left[n].nonmanifold_count;
         st = cwi_finish_mesh(mesh, left + n, out + n, err);
-        cwi_block_free(left + n);
         if (st == CW_OK)
-            st = cwi_carry(mesh, NULL, desc->threads, &p.poll, out + n, err);
+            st = carry_attributes(mesh, left[n].texture, desc->threads, &p.poll, out + n, err);
+        cwi_block_free(left + n);
         if (st == CW_OK && facts)
             facts[n] = (cw_simplify_facts){.vertices = out[n].vertex_count,
                                            .triangles = out[n].triangle_count,

@@ -18,8 +18,7 @@ const cli_asset *cli_find_asset(int n)
 void cli_fill_levels(const cli_asset *asset, cli_counts *lod)
 {
     const cw_budget *budget = cw_check_budget(asset->profile);
-    if (lod->count)
-        return;
+    lod->count = 0;
     while (lod->count < CW_BUDGET_LEVELS && budget->triangles[lod->count]) {
         lod->n[lod->count] = budget->triangles[lod->count];
         lod->count++;

@@ -19,7 +19,7 @@ typedef struct cli_asset {
 /* Returns the n-th profile of CLI_ASSET_CHOICES; NULL: there is none. n: from 0, or less */
 const cli_asset *cli_find_asset(int n);
 
-/* Sets the levels of detail that were not given. */
+/* Sets the levels of detail. */
 void cli_fill_levels(const cli_asset *asset, cli_counts *lod);
 
 /* Sets the atlas, the maps and the closing of handles that were not given. */

@@ -1,7 +1,9 @@
 /* Checks the options of texture coordinates and baked maps, and prints the facts on both. */
 #include "cli/assets/texture_options.h"
 
+#include "cli/framework/console.h"
 #include "cli/framework/quantity.h"
+#include "core/base/atomic_file.h"
 #include "core/base/status.h"
 
 #include <stdio.h>
@@ -49,6 +51,31 @@ unsigned cli_find_maps(const cli_texture_args *args)
     return parse_maps(args->maps, &maps, &bad) ? maps : 0;
 }
 
+/* Returns the place of a map in the textures of a mesh; NULL: it has none. */
+static cw_texture *find_texture(cw_textures *textures, int map)
+{
+    switch (map) {
+    case CW_MAP_NORMALS:
+        return &textures->normal;
+    case CW_MAP_OCCLUSION:
+        return &textures->occlusion;
+    case CW_MAP_COLORS:
+        return &textures->color;
+    default:
+        return NULL;
+    }
+}
+
+/* Returns those of some maps that a file holds. */
+static unsigned find_held(unsigned maps)
+{
+    cw_textures textures = {0};
+    unsigned held = 0;
+    for (int m = 0; m < CW_MAP_COUNT; m++)
+        held |= find_texture(&textures, m) ? maps & 1u << m : 0;
+    return held;
+}
+
 static cw_status check_maps(const cli_texture_args *args, const char *output,
                             const char *format, cw_error *err)
 {
@@ -63,9 +90,9 @@ static cw_status check_maps(const cli_texture_args *args, const char *output,
     if (!parse_maps(args->maps, &maps, &bad))
         return cwi_fail(err, CW_ERR_ARGUMENT, "--maps %s: '%.*s' is no map: expected %s",
                         args->maps, (int)strcspn(bad, ","), bad, names);
-    if (maps && f && !(f->keeps & CW_KEEPS_PICTURES))
+    if (find_held(maps) && f && !(f->keeps & CW_KEEPS_PICTURES))
         return cwi_fail(err, CW_ERR_ARGUMENT,
-                        "%s holds no maps; .glb and .gltf do, and --maps none makes none",
+                        "%s holds no maps; .glb, .gltf and .obj do, and --maps none makes none",
                         f->name);
     return CW_OK;
 }
@@ -106,20 +133,66 @@ cw_bake_desc cli_bake_desc(const cli_texture_args *args, double reach_mm)
     return (cw_bake_desc){.size = texels_of(args->atlas),
                           .margin = texels_of(args->margin),
                           .reach_mm = reach_mm,
-                          .maps = cli_find_maps(args)};
+                          .maps = cli_find_maps(args),
+                          .deep = args->map_bits};
 }
 
 /* --- images --------------------------------------------------------------------------------- */
 
 cw_status cli_encode_maps(const cw_image *images, cli_maps *maps, cw_error *err)
 {
-    cw_texture *const targets[CW_MAP_COUNT] = {[CW_MAP_NORMALS] = &maps->textures.normal};
     cw_status st = CW_OK;
     for (int m = 0; m < CW_MAP_COUNT && st == CW_OK; m++) {
+        cw_texture *texture = find_texture(&maps->textures, m);
         if (!images[m].pixels)
             continue;
-        st = cw_image_encode(&images[m], false, &maps->bytes[m], &targets[m]->size, err);
-        targets[m]->bytes = maps->bytes[m];
+        st = cw_image_encode(&images[m], m == CW_MAP_COLORS, &maps->bytes[m], &maps->size[m],
+                             err);
+        if (texture)
+            *texture = (cw_texture){.bytes = maps->bytes[m], .size = maps->size[m]};
+    }
+    return st;
+}
+
+const cw_textures *cli_find_textures(const cli_maps *maps)
+{
+    for (int m = 0; m < CW_MAP_COUNT; m++)
+        if (maps->bytes[m] && find_held(1u << m))
+            return &maps->textures;
+    return NULL;
+}
+
+static cw_status write_map(const char *path, const uint8_t *bytes, size_t size, bool no_clobber,
+                           cw_error *err)
+{
+    cwi_outfile *file = NULL;
+    cw_status st = cwi_outfile_open(&file, path, no_clobber, err);
+    if (st == CW_OK)
+        st = cwi_outfile_write(file, bytes, size, err);
+    if (st == CW_OK)
+        st = cwi_outfile_commit(&file, err);
+    cwi_outfile_abort(&file);
+    return st == CW_OK ? CW_OK : cwi_fail_in(err, st, path);
+}
+
+cw_status cli_write_maps(const cli_maps *maps, const char *output, bool no_clobber,
+                         cw_error *err)
+{
+    const char *slash = strrchr(output, '/'), *dot = strrchr(slash ? slash : output, '.');
+    const int stem = (int)(dot ? (size_t)(dot - output) : strlen(output));
+    cw_status st = CW_OK;
+    for (int m = 0; m < CW_MAP_COUNT && st == CW_OK; m++) {
+        char path[4096];
+        if (!maps->bytes[m] || find_held(1u << m))
+            continue;
+        if (snprintf(path, sizeof path, "%.*s-%s.png", stem, output, cw_map_name((cw_map)m)) >=
+            (int)sizeof path)
+            return cwi_fail(err, CW_ERR_ARGUMENT, "%s: the name of its map is too long",
+                            output);
+        st = write_map(path, maps->bytes[m], maps->size[m], no_clobber, err);
+        if (st == CW_OK)
+            cli_say("%s: the map of %s, %s", path, cw_map_name((cw_map)m),
+                    cli_bytes((double)maps->size[m]));
     }
     return st;
 }
@@ -143,6 +216,8 @@ void cli_json_texture(cli_json *j, const cli_texture_args *args)
         cli_json_number(j, "texels_per_mm", args->density.value);
     if (args->maps)
         cli_json_text(j, "maps", args->maps);
+    if (args->map_bits)
+        cli_json_count(j, "map_bits", 16);
 }
 
 void cli_json_atlas(cli_json *j, const cw_atlas_facts *f)
@@ -164,6 +239,10 @@ void cli_json_maps(cli_json *j, const cw_bake_facts *f)
 {
     cli_json_open(j, "maps", '{');
     cli_json_number(j, "reach_mm", f->reach_mm);
+    cli_json_number(j, "occlusion_mm", f->occlusion_mm);
+    cli_json_number(j, "thickness_mm", f->thickness_mm);
+    if (f->curvature_max > 0)
+        cli_json_number(j, "curvature_max", f->curvature_max);
     cli_json_count(j, "texels", f->texels);
     cli_json_count(j, "missed", f->missed);
     cli_json_number(j, "max_mm", f->max_mm);
@@ -190,10 +269,9 @@ static double missed_percent(const cw_bake_facts *f)
 
 void cli_maps_text(const cw_bake_facts *f, const char *source, char text[CLI_TEXTURE_TEXT])
 {
-    snprintf(
-        text, CLI_TEXTURE_TEXT,
-        "normal map of %s, at most %.3g mm away, mean %.2g mm; %.2g %% of the texels missed",
-        source, f->max_mm, f->mean_mm, missed_percent(f));
+    snprintf(text, CLI_TEXTURE_TEXT,
+             "maps of %s, at most %.3g mm away, mean %.2g mm; %.2g %% of the texels missed",
+             source, f->max_mm, f->mean_mm, missed_percent(f));
 }
 
 double cli_find_missed(const cw_bake_facts *f)

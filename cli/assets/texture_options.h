@@ -14,6 +14,7 @@ typedef struct cli_texture_args {
     size_t atlas, margin; /* texels; SIZE_MAX: none was given */
     cli_number density;
     const char *maps; /* names by comma, or "none"; NULL: none was given */
+    int map_bits;     /* of a channel: 0: 8, 1: 16 */
     cli_length reach;
 } cli_texture_args;
 
@@ -37,6 +38,12 @@ typedef struct cli_texture_args {
          "N",                                                                                  \
          "Texels that stay free around each chart (2)",                                        \
          row + offsetof(cli_texture_args, margin)},                                            \
+        {"map-bits",                                                                           \
+         0,                                                                                    \
+         CLI_CHOICE,                                                                           \
+         "8/16",                                                                               \
+         "Bits of a channel in the PNG of a map (8)",                                          \
+         row + offsetof(cli_texture_args, map_bits)},                                          \
     {                                                                                          \
         "texel-density", 0, CLI_NUMBER, "D", "Texels for each mm (as many as fit)",            \
             row + offsetof(cli_texture_args, density)                                          \
@@ -57,12 +64,21 @@ cw_bake_desc cli_bake_desc(const cli_texture_args *args, double reach_mm);
 /* Baked maps as the bytes of images. Zero it; free it with cli_free_maps(). */
 typedef struct cli_maps {
     cw_textures textures;         /* points into bytes */
-    uint8_t *bytes[CW_MAP_COUNT]; /* PNG */
+    uint8_t *bytes[CW_MAP_COUNT]; /* PNG; NULL: was not baked */
+    size_t size[CW_MAP_COUNT];
 } cli_maps;
 
 /* Encodes those of CW_MAP_COUNT images that have pixels. */
 CW_NODISCARD cw_status cli_encode_maps(const cw_image *images, cli_maps *maps, cw_error *err);
 void cli_free_maps(cli_maps *maps);
+
+/* Returns the maps that a mesh holds as its textures; NULL: it holds none of them. */
+const cw_textures *cli_find_textures(const cli_maps *maps);
+
+/* Writes the maps that the output has no place for beside it, as "head-curvature.png", and says so.
+ * output  path of the mesh, as it was written */
+CW_NODISCARD cw_status cli_write_maps(const cli_maps *maps, const char *output, bool no_clobber,
+                                      cw_error *err);
 
 /* Write the settings into the open object. */
 void cli_json_texture(cli_json *j, const cli_texture_args *args);

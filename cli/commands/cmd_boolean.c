@@ -273,6 +273,7 @@ static const cli_mesh_command boolean = {
     .prepare = read_others,
     .resolve = make_pieces,
     .work = run_operation,
+    .loses_texture = true,
     .report = report_facts,
     .put_params = put_params,
     .put_facts = put_facts,

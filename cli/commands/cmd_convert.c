@@ -1,9 +1,11 @@
 /* The command convert: writes a mesh in another format, merged or split into its parts. */
 #include "cli/commands/command_rows.h"
+#include "cli/commands/convert_asset.h"
 #include "cli/commands/mesh_command.h"
 #include "cli/framework/console.h"
 #include "cli/inputs/cut_options.h"
 #include "cli/inputs/place_options.h"
+#include "cli/results/detail_levels.h"
 #include "core/base/status.h"
 
 #include <stdlib.h>
@@ -13,6 +15,8 @@ typedef struct convert_args {
     cli_placing placing;
     cli_plane cut;
     bool split, check;
+    int profile; /* 0: none, else 1 + that of cli_find_asset() */
+    int pivot;   /* of a profile's levels */
 } convert_args;
 
 static const convert_args *args_of(const cli_mesh_run *r)
@@ -20,7 +24,12 @@ static const convert_args *args_of(const cli_mesh_run *r)
     return (const convert_args *)r->args;
 }
 
-static const convert_args defaults = {.check = true};
+static const cli_asset *asset_of(const cli_mesh_run *r)
+{
+    return cli_find_asset(args_of(r)->profile - 1);
+}
+
+static const convert_args defaults = {.mesh.compress.kind = -1, .check = true};
 
 static const cli_option options[] = {
     CLI_MESH_OUTPUT(", with --split {name} and {part}"),
@@ -38,6 +47,9 @@ static const cli_option options[] = {
      offsetof(convert_args, cut)},
     {"check", 0, CLI_FLAG, NULL, "Measure the mesh: closed, manifold, size (on; --no-check)",
      offsetof(convert_args, check)},
+    {"profile", 'p', CLI_CHOICE, "none/" CLI_ASSET_CHOICES,
+     "Make an asset within a budget: levels of detail, texture coordinates and a normal map (none)",
+     offsetof(convert_args, profile)},
     CLI_PLACING_OPTIONS(offsetof(convert_args, placing)),
     CLI_MESH_COMMON,
 };
@@ -45,6 +57,7 @@ static const cli_option options[] = {
 static const cli_rule rules[] = {
     {NULL, CLI_NEEDS, "output"},
     {"merge", CLI_EXCLUDES, "split"},
+    {"profile", CLI_EXCLUDES, "split cut-plane no-check"},
     CLI_COMPRESS_RULES,
 };
 
@@ -55,7 +68,10 @@ static void put_params(cli_json *j, const cli_mesh_run *r, const cli_made *made)
     cli_json_bool(j, "merge", r->args->merge);
     cli_json_bool(j, "split", args->split);
     cli_json_bool(j, "orient", r->args->orient);
+    if (asset_of(r))
+        cli_json_text(j, "profile", asset_of(r)->name);
     cli_json_placing(j, &args->placing);
+    cli_json_pivot(j, args->pivot);
     if (args->cut.given)
         cli_json_text(j, "cut_plane", cli_plane_text(&args->cut));
 }
@@ -68,14 +84,28 @@ static void put_facts(cli_json *j, const cli_mesh_run *r)
 
 static cw_status check_values(cli_mesh_run *r, cw_error *err)
 {
-    r->reads_parts = r->reads_parts || args_of(r)->split;
-    r->report.several = args_of(r)->split ? "parts" : NULL;
+    r->reads_parts = (r->reads_parts || args_of(r)->split) && !asset_of(r);
+    r->report.several = args_of(r)->split ? "parts" : asset_of(r) ? "levels" : NULL;
+    if (asset_of(r) && !cw_simplify_available())
+        return cwi_fail(err, CW_ERR_UNSUPPORTED,
+                        "--profile needs OpenMesh, which this build lacks: install "
+                        "libopenmesh-dev and build again");
+    if (asset_of(r) && !cli_is_gltf(r->args->output, r->args->written.format))
+        return cwi_fail(err, CW_ERR_ARGUMENT,
+                        "--profile %s: levels and maps in one file are for .glb and .gltf",
+                        asset_of(r)->name);
     return cli_check_placing(&args_of(r)->placing, err);
 }
 
 /* The names of --split are known only after reading. */
 static cw_status name_outputs(cli_mesh_run *r, cw_error *err)
 {
+    cli_counts lod = {0};
+    if (asset_of(r)) {
+        cli_fill_levels(asset_of(r), &lod);
+        return cli_name_detail_levels(&r->outputs, r->args->output, r->args->written.format,
+                                      r->args->common.inputs[0], &lod, true, err);
+    }
     return args_of(r)->split
                ? CW_OK
                : cli_name_output(&r->outputs, r->args->output, r->args->common.inputs[0], err);
@@ -144,13 +174,16 @@ static cw_status convert_mesh(cli_mesh_run *r, cw_error *err)
     const cli_mesh *m = &r->mesh;
     if (!cli_mesh_triangles(m))
         return cwi_fail(err, CW_ERR_EMPTY, "%s: it has no triangles", m->path);
+    if (asset_of(r))
+        return cli_convert_asset(r, asset_of(r), args_of(r)->pivot, err);
     if (args_of(r)->split && m->part_count > 1)
         return convert_parts(r, m->parts, m->part_count, err);
     if (args_of(r)->split)
         return convert_solids(r, m->parts ? m->parts[0].mesh : &m->mesh,
                               m->parts ? m->parts[0].label : NULL, err);
     return m->parts ? convert_file(r, 0, m->parts, m->part_count, err)
-                    : convert_file(r, 0, &(cw_part){.mesh = &m->mesh}, 1, err);
+                    : convert_file(r, 0, &(cw_part){.mesh = &m->mesh, .textures = m->textures},
+                                   1, err);
 }
 
 static const cli_mesh_command convert = {
@@ -165,10 +198,24 @@ static const cli_mesh_command convert = {
     .put_facts = put_facts,
 };
 
+/* Sets what a profile asks for and was not given. Its levels are moved to the pivot when they are made. */
+static void fill_profile(convert_args *args)
+{
+    const cli_asset *asset = cli_find_asset(args->profile - 1);
+    int *compression = &args->mesh.compress.kind;
+    if (*compression < 0)
+        *compression = asset ? asset->compression : CW_COMPRESS_NONE;
+    if (asset) {
+        args->pivot = args->placing.pivot;
+        args->placing.pivot = CLI_PIVOT_FILE;
+    }
+}
+
 static cw_status run_convert(void *args, cw_error *err)
 {
     cw_cut_facts cut = {0};
-    return cli_run_mesh_command(&convert, args, &cut, 1, err);
+    fill_profile(args);
+    return cli_run_mesh_command(&convert, args, &cut, 1 + CW_BUDGET_LEVELS, err);
 }
 
 const cli_command cli_convert = {

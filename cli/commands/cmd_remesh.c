@@ -262,6 +262,7 @@ static const cli_mesh_command remesh = {
     .check = check_values,
     .resolve = resolve_desc,
     .work = remesh_pieces,
+    .loses_texture = true,
     .report = report_facts,
     .measure = measure_result,
     .put_params = put_params,

@@ -292,6 +292,8 @@ static cw_status simplify_parts(cli_mesh_run *r, cw_error *err)
         desc.error_mm = r->promised_mm;
         desc.triangles = share_of(r, p);
         desc.ratio = args_of(r)->ratio.value;
+        /* parts by material share a border, which must fit */
+        desc.keep_border = desc.keep_border || (p->textures && r->pieces.count > 1);
         st = cw_simplify(&p->input, &desc, &p->out, NULL, err);
     }
     return st;

@@ -5,11 +5,12 @@
 #include "cli/framework/console.h"
 #include "cli/framework/quantity.h"
 #include "cli/looks/looks_facts.h"
+#include "core/base/memory.h"
 #include "core/base/status.h"
 #include "core/mesh/mesh.h"
-#include "core/mesh/mesh_attributes.h"
 
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 typedef struct uv_args {
@@ -43,7 +44,8 @@ static const cli_option options[] = {
     {"bake", 0, CLI_TEXT, "MESH",
      "Bake the surface of this mesh, which has more triangles, into maps of the output (none)",
      offsetof(cli_mesh_args, source), CLI_VALUES_MESH},
-    {"maps", 0, CLI_TEXT, "NAME[,NAME...]", "Maps that --bake makes: normals (normals)",
+    {"maps", 0, CLI_TEXT, "NAME[,NAME...]",
+     "Maps that --bake makes: normals, occlusion, curvature, thickness, colors (normals)",
      offsetof(uv_args, texture) + offsetof(cli_texture_args, maps)},
     {"reach", 0, CLI_LENGTH, "L",
      "How far the mesh of --bake may be (4% of the box's diagonal)",
@@ -59,7 +61,7 @@ static const cli_option options[] = {
 
 static const cli_rule rules[] = {
     {NULL, CLI_NEEDS, "output"},
-    {"maps reach looks", CLI_NEEDS, "bake"},
+    {"maps map-bits reach looks", CLI_NEEDS, "bake"},
     CLI_COMPRESS_RULES,
 };
 
@@ -146,46 +148,16 @@ static cw_status check_values(cli_mesh_run *r, cw_error *err)
 
 /* --- work --------------------------------------------------------------------------------- */
 
-/* Adds a mesh to those joined before, with its normals if asked for, and one attribute or none. */
-static cw_status join_mesh(const cw_mesh *mesh, bool normals, cw_attribute *attribute,
-                           bool is_first, cw_mesh *all, cw_error *err)
-{
-    cw_mesh bare = *mesh;
-    bare.normals = normals ? mesh->normals : NULL;
-    bare.scalars = NULL;
-    bare.colors = NULL;
-    bare.labels = NULL;
-    bare.attributes = attribute;
-    bare.attribute_count = attribute ? 1 : 0;
-    return is_first ? cwi_mesh_copy(&bare, all, err) : cwi_mesh_append(all, &bare, err);
-}
-
-/* Joins the surfaces of all pieces. */
-static cw_status join_pieces(const cli_pieces *p, cw_mesh *all, cw_error *err)
+/* Copies each piece, and lists what comes out. NULL without memory */
+static cw_status copy_pieces(cli_pieces *p, cw_mesh ***list, cw_error *err)
 {
     cw_status st = CW_OK;
-    for (size_t n = 0; n < p->count && st == CW_OK; n++)
-        st = join_mesh(&p->piece[n].input, false, NULL, n == 0, all, err);
-    return st;
-}
-
-/* Copies each piece, with its share of the texture coordinates of all. */
-static cw_status share_coordinates(cli_pieces *p, const cw_mesh *all, cw_error *err)
-{
-    const cw_attribute *from = cw_mesh_attribute_find(all, CW_TEXTURE_COORDINATES);
-    size_t corner = 0;
-    cw_status st = CW_OK;
+    *list = calloc(p->count, sizeof **list);
+    if (!*list)
+        return cwi_fail_memory(err);
     for (size_t n = 0; n < p->count && st == CW_OK; n++) {
-        cw_mesh *out = &p->piece[n].out;
-        cw_attribute *added = NULL;
-        st = cwi_mesh_copy(&p->piece[n].input, out, err);
-        cw_mesh_attribute_remove(out, CW_TEXTURE_COORDINATES);
-        if (st == CW_OK)
-            st = cw_mesh_attribute_add(out, from, &added, err);
-        if (st == CW_OK)
-            memcpy(added->data, (const float *)from->data + 2 * corner,
-                   6 * out->triangle_count * sizeof(float));
-        corner += 3 * out->triangle_count;
+        (*list)[n] = &p->piece[n].out;
+        st = cwi_mesh_copy(&p->piece[n].input, &p->piece[n].out, err);
     }
     return st;
 }
@@ -206,80 +178,101 @@ static cw_status resolve_reach(cli_mesh_run *r, cw_error *err)
                            err);
 }
 
-/* Joins the finished pieces, with their normals and coordinates alone. */
-static cw_status join_finished(cli_pieces *p, cw_mesh *all, cw_error *err)
+static const cw_image *image_or_none(const cw_image *image)
 {
-    cw_status st = CW_OK;
-    for (size_t n = 0; n < p->count && st == CW_OK; n++) {
-        cw_mesh *out = &p->piece[n].out;
-        if (!out->normals)
-            st = cw_mesh_normals(out, err);
-        if (st == CW_OK)
-            st = join_mesh(out, true, cw_mesh_attribute_find(out, CW_TEXTURE_COORDINATES),
-                           n == 0, all, err);
-    }
-    return st;
+    return image->pixels ? image : NULL;
 }
 
-/* Compares the mesh and its normal map with the full mesh. */
-static cw_status compare_looks(cli_mesh_run *r, const cw_mesh *all, const cw_image *normals,
+/* Compares the pieces and their maps with the full mesh. */
+static cw_status compare_looks(cli_mesh_run *r, cw_mesh *const *list, const cw_image *images,
                                cw_error *err)
 {
     uv_state *s = r->state;
-    const cw_surface_look full = {.mesh = &s->full.mesh},
-                          low = {.mesh = all, .normal_map = normals->pixels ? normals : NULL};
+    const cw_surface_look full = {.mesh = &s->full.mesh};
     const cw_appearance_desc desc = {.threads = r->threads,
                                      .progress = cli_progress(8, "view")};
-    cw_status st =
-        cw_appearance_measure(&full, 1, &low, 1, &desc, &s->looks, &s->bare_looks, err);
+    cw_surface_look *pieces = calloc(r->pieces.count, sizeof *pieces);
+    for (size_t n = 0; n < r->pieces.count && pieces; n++)
+        pieces[n] =
+            (cw_surface_look){.mesh = list[n],
+                              .normal_map = image_or_none(&images[CW_MAP_NORMALS]),
+                              .color_map = image_or_none(&images[CW_MAP_COLORS]),
+                              .occlusion_map = image_or_none(&images[CW_MAP_OCCLUSION])};
+    cw_status st = pieces ? cw_appearance_measure(&full, 1, pieces, r->pieces.count, &desc,
+                                                  &s->looks, &s->bare_looks, err)
+                          : cwi_fail_memory(err);
+    free(pieces);
     return st == CW_OK ? cli_looks_hold(&s->limit, &s->looks, err) : st;
 }
 
 /* Bakes the maps of all pieces. Normals that the full mesh lacks are made once its corners are
  * joined. */
-static cw_status bake(cli_mesh_run *r, cw_error *err)
+static cw_status bake(cli_mesh_run *r, cw_mesh *const *list, cw_error *err)
 {
     uv_state *s = r->state;
-    cw_mesh all = {0};
     cw_image images[CW_MAP_COUNT] = {{0}};
     cw_bake_desc desc = cli_bake_desc(&args_of(r)->texture, s->reach_mm);
+    cw_status st = CW_OK;
     desc.size = s->facts.size;
     desc.margin = s->facts.margin;
     desc.threads = r->threads;
     desc.progress = cli_progress((double)desc.size * desc.size / 1e6, "Mtexel");
-    cw_status st = join_finished(&r->pieces, &all, err);
+    for (size_t n = 0; n < r->pieces.count && st == CW_OK; n++)
+        st = list[n]->normals ? CW_OK : cw_mesh_normals(list[n], err);
     if (st == CW_OK && !s->full.mesh.normals)
         st = cw_mesh_weld(&s->full.mesh, NULL, err);
     if (st == CW_OK && !s->full.mesh.normals)
         st = cw_mesh_normals(&s->full.mesh, err);
     if (st == CW_OK)
-        st = cw_bake_normals(&all, &s->full.mesh, &desc, &images[CW_MAP_NORMALS], &s->baked,
-                             err);
+        st = cw_bake_meshes((const cw_mesh *const *)list, r->pieces.count, &s->full.mesh, &desc,
+                            images, &s->baked, err);
+    if (st == CW_ERR_ARGUMENT && cli_find_maps(&args_of(r)->texture) >> CW_MAP_COLORS & 1)
+        r->blamed = s->full.path;
     if (st == CW_OK)
         st = cli_encode_maps(images, &s->maps, err);
     if (st == CW_OK && args_of(r)->looks)
-        st = compare_looks(r, &all, &images[CW_MAP_NORMALS], err);
-    r->pieces.textures = &s->maps.textures;
+        st = compare_looks(r, list, images, err);
+    r->pieces.textures = cli_find_textures(&s->maps);
     for (int m = 0; m < CW_MAP_COUNT; m++)
         cw_image_free(&images[m]);
-    cw_mesh_free(&all);
     return st;
+}
+
+/* Forgets the pictures that the mesh came with, and says so. */
+static void drop_pictures(cli_mesh_run *r)
+{
+    bool had_pictures = false;
+    for (size_t n = 0; n < r->pieces.count; n++) {
+        had_pictures = had_pictures || r->pieces.piece[n].textures;
+        r->pieces.piece[n].textures = NULL;
+    }
+    if (had_pictures)
+        cli_say("%s: pictures lost: they lie by the texture coordinates that it had",
+                r->mesh.path);
 }
 
 static cw_status lay_flat(cli_mesh_run *r, cw_error *err)
 {
     uv_state *s = r->state;
-    cw_mesh all = {0};
+    cw_mesh **list = NULL;
     cw_atlas_desc desc = cli_atlas_desc(&args_of(r)->texture);
     desc.threads = r->threads;
     desc.progress = cli_progress((double)r->pieces.triangles / 1e6, "Mtriangle");
-    cw_status st = join_pieces(&r->pieces, &all, err);
+    drop_pictures(r);
+    cw_status st = copy_pieces(&r->pieces, &list, err);
     if (st == CW_OK)
-        st = cw_mesh_atlas(&all, &desc, &s->facts, err);
-    if (st == CW_OK)
-        st = share_coordinates(&r->pieces, &all, err);
-    cw_mesh_free(&all);
-    return st == CW_OK && r->args->source ? bake(r, err) : st;
+        st = cw_meshes_atlas(list, NULL, r->pieces.count, &desc, &s->facts, err);
+    if (st == CW_OK && r->args->source)
+        st = bake(r, list, err);
+    free(list);
+    return st;
+}
+
+/* Writes the maps that the file has no place for. */
+static cw_status write_maps(cli_mesh_run *r, cw_error *err)
+{
+    return cli_write_maps(&((const uv_state *)r->state)->maps, r->outputs.path[0],
+                          r->args->written.no_clobber, err);
 }
 
 static const cli_mesh_command uv = {
@@ -289,6 +282,7 @@ static const cli_mesh_command uv = {
     .resolve = resolve_reach,
     .work = lay_flat,
     .report = report_facts,
+    .judge = write_maps,
     .put_params = put_params,
     .put_facts = put_facts,
 };

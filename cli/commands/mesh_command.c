@@ -6,6 +6,8 @@
 #include "cli/results/mesh_comparison.h"
 #include "core/base/status.h"
 
+#include <cubewright/atlas.h>
+
 #include <stdlib.h>
 
 /* --- before the input is read ------------------------------------------------------------- */
@@ -103,6 +105,28 @@ size_t cli_made_triangles(const cli_mesh_run *r)
     return triangles;
 }
 
+/* Drops texture coordinates that are not right any more, and says if the texture is lost. Pictures without
+ * coordinates are of no use. */
+static void settle_texture(cli_mesh_run *r)
+{
+    bool is_lost = false;
+    for (size_t n = 0; n < r->pieces.count; n++) {
+        cli_piece *piece = &r->pieces.piece[n];
+        if (r->command->loses_texture)
+            cw_mesh_attribute_remove(&piece->out, CW_TEXTURE_COORDINATES);
+        if (!piece->out.triangle_count ||
+            cw_mesh_attribute_find(&piece->out, CW_TEXTURE_COORDINATES))
+            continue;
+        is_lost = true;
+        piece->textures = NULL;
+    }
+    if (is_lost && r->outputs.count && cli_is_textured(&r->mesh))
+        cli_say(
+            "%s: texture lost: %s makes other triangles; 'cubewright uv %s --rebake %s -o FILE' "
+            "carries it over",
+            r->mesh.path, r->command->name, r->outputs.path[0], r->mesh.path);
+}
+
 static cw_status do_work(cli_mesh_run *r, cw_error *err)
 {
     const size_t before = r->pieces.triangles;
@@ -111,6 +135,7 @@ static cw_status do_work(cli_mesh_run *r, cw_error *err)
     if (st != CW_OK)
         return cwi_fail_in(err, st, r->blamed ? r->blamed : r->mesh.path);
     r->is_made = true;
+    settle_texture(r);
     cli_report_end(&r->report, r->command->name, before,
                    r->outputs.count ? cli_made_triangles(r) : before);
     return r->command->report ? r->command->report(r, err) : CW_OK;

@@ -81,6 +81,7 @@ typedef struct cli_mesh_command {
     const char *main_step; /* of the report, with the settings; default: the name */
     cli_piecing piecing;
     bool holds_topology; /* what is made has to have the topology of the input */
+    bool loses_texture;  /* what is made does not lie on the input's texture */
     /* Checks values, before anything is read. */
     cw_status (*check)(cli_mesh_run *run, cw_error *err);
     /* Names the outputs; default: that of -o. */

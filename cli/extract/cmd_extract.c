@@ -22,7 +22,7 @@ enum { DEFAULT_FPS = 10 };
 
 static const cli_extract_args defaults = {.compress.kind = -1,
                                           .texture = CLI_TEXTURE_DEFAULTS,
-                                          .pivot = -1,
+
                                           .check = true,
                                           .measure = true};
 
@@ -136,7 +136,8 @@ static const cli_option options[] = {
      offsetof(cli_extract_args, texture) + offsetof(cli_texture_args, uv)},
     CLI_ATLAS_OPTIONS(offsetof(cli_extract_args, texture)),
     {"maps", 0, CLI_TEXT, "NAME[,NAME...]",
-     "Maps of the surface before --simplify or --lod to bake: normals (none)",
+     "Maps to bake of the surface before --simplify or --lod: normals, occlusion, curvature, "
+     "thickness, colors of --color-by (none)",
      offsetof(cli_extract_args, texture) + offsetof(cli_texture_args, maps)},
     {"pivot", 0, CLI_CHOICE, "file/base/centre",
      "Move to 0,0,0 the middle of the box, or that of its lower side (the volume's zero stays)",
@@ -222,7 +223,7 @@ static const cli_rule rules[] = {
     {"names smooth-labels table shared-faces per-label require-labels", CLI_NEEDS, "labels"},
     {"labels", CLI_EXCLUDES,
      "iso inside topology placement snap profile=print max-error pixel-error shading size no-measure fps "
-     "steps animate pvd prove-crop pivot=base pivot=centre component=mag resample denoise remove-table mask mask-open mask-close"},
+     "steps animate pvd prove-crop pivot component=mag resample denoise remove-table mask mask-open mask-close"},
     {"per-label", CLI_NEEDS, "simplify"},
     {"per-label", CLI_EXCLUDES, "shared-faces"},
     {"lod", CLI_EXCLUDES,
@@ -233,11 +234,11 @@ static const cli_rule rules[] = {
     {"shading", CLI_NEEDS, "pixel-error"},
     {"snap", CLI_EXCLUDES, "simplify max-error pixel-error cull"},
     {"max-move", CLI_NEEDS, "smooth"},
-    {"no-measure", CLI_NEEDS, "simplify lod smooth"},
+    {"no-measure", CLI_NEEDS, "simplify lod smooth profile=game profile=web profile=mobile"},
     {"profile=print", CLI_EXCLUDES, "open cull lod animate no-check"},
     {"fps", CLI_NEEDS, "animate"},
     {"pvd", CLI_EXCLUDES, "animate"},
-    {"maps atlas margin texel-density", CLI_NEEDS,
+    {"maps atlas margin map-bits texel-density", CLI_NEEDS,
      "uv profile=game profile=web profile=mobile"},
     {"maps", CLI_NEEDS,
      "simplify lod max-error pixel-error profile=game profile=web profile=mobile"},
@@ -332,11 +333,13 @@ static cw_status make_surface(cli_extract_run *s, const cli_moment *moment, size
         st = cli_extract_prove_crop(s, moment, made, err);
     if (st == CW_OK)
         st = cli_move_to_pivot(s->args->pivot, &mesh, 1, made->pivot, err);
-    const cw_part part = {.mesh = &mesh, .textures = &s->output.maps.textures};
+    const cw_part part = {.mesh = &mesh, .textures = cli_find_textures(&s->output.maps)};
     if (st == CW_OK)
         st = s->args->animate ? cli_deliver_step(&s->output.report, &how, &mesh,
                                                  counts->border_loops, s->output.start, err)
                               : deliver_level(s, n, &part, 1, counts->border_loops, err);
+    if (st == CW_OK && made->path)
+        st = cli_write_maps(&s->output.maps, made->path, s->args->no_clobber, err);
     if (st == CW_OK)
         st = cli_extract_judge_print(s, made, &mesh, err);
     if (s->args->animate && (st == CW_OK || st == CW_ERR_EMPTY))

@@ -27,11 +27,10 @@ void cli_extract_fill_profile(cli_extract_args *args)
     const cli_asset *asset = cli_extract_asset(args);
     if (args->compress.kind < 0) /* none was given */
         args->compress.kind = asset ? asset->compression : CW_COMPRESS_NONE;
-    if (args->pivot < 0)
-        args->pivot = asset ? CLI_PIVOT_BASE : CLI_PIVOT_FILE;
     if (!asset)
         return;
-    if (!cli_extract_is_simplified(args))
+    args->fills_levels = !args->lod.count && !cli_extract_is_simplified(args);
+    if (args->fills_levels)
         cli_fill_levels(asset, &args->lod);
     cli_fill_texture(asset, &args->texture, &args->handles);
     args->fill_voids = true;

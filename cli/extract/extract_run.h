@@ -37,7 +37,8 @@ typedef struct cli_extract_args {
     cli_color_args color;
     int profile; /* CLI_PROFILE_... */
     cli_texture_args texture;
-    int pivot; /* as of cli_placing */
+    bool fills_levels; /* the profile has set lod */
+    int pivot;         /* as of cli_placing */
     cli_printer printer;
     cli_pixel_args pixel;
     int inside, normals, progress, topology, placement, accel;

@@ -2,6 +2,7 @@
  * by level, measures each against it, and writes them. */
 #include "cli/extract/extract_run.h"
 
+#include "cli/assets/taken_levels.h"
 #include "cli/framework/console.h"
 #include "cli/inputs/extract_surface.h"
 #include "cli/results/detail_levels.h"
@@ -10,46 +11,13 @@
 #include <stdio.h>
 #include <string.h>
 
-/* The full surface, and the run that makes levels of it. */
+/* The levels, and the run that makes them. */
 typedef struct lod_run {
     cli_extract_run *run;
-    cw_mesh full;
-    cw_mesh *levels;
-    cw_pipeline_facts facts[CLI_MAX_COUNTS]; /* of each level */
-    double moved[3];                         /* to the pivot */
-    size_t triangles;                        /* of all levels */
-    cli_pieces pieces;                       /* the full surface is the only one */
+    cli_taken_levels taken;
+    double moved[3];   /* to the pivot */
+    cli_pieces pieces; /* the full surface is the only one */
 } lod_run;
-
-/* Moves a level out of the pipeline; with the last, the surface that all were made of. */
-static cw_status take_level(void *user, cw_pipeline_surface *surface,
-                            const cw_pipeline_facts *facts, cw_error *err)
-{
-    lod_run *r = user;
-    cw_status st = cli_extract_take_maps(r->run, surface, err);
-    if (st != CW_OK)
-        return st;
-    r->facts[surface->level] = *facts;
-    r->levels[surface->level] = *surface->mesh;
-    r->triangles += surface->mesh->triangle_count;
-    *surface->mesh = (cw_mesh){0};
-    if (surface->level + 1 < r->run->args->lod.count)
-        return CW_OK;
-    r->full = *surface->full;
-    *surface->full = (cw_mesh){0};
-    return CW_OK;
-}
-
-/* Moves level 0 to the pivot, and all others with it. */
-static cw_status move_levels(lod_run *r, double moved[3], cw_error *err)
-{
-    const cli_extract_args *args = r->run->args;
-    cw_status st = cli_move_to_pivot(args->pivot, r->levels, 1, moved, err);
-    const double map[12] = {1, 0, 0, moved[0], 0, 1, 0, moved[1], 0, 0, 1, moved[2]};
-    for (size_t n = 1; n < args->lod.count && st == CW_OK; n++)
-        st = cw_mesh_transform(&r->levels[n], map, err);
-    return st == CW_OK ? cw_mesh_transform(&r->full, map, err) : st;
-}
 
 static cw_status make_levels(void *state, cw_mesh *levels, cw_error *err)
 {
@@ -58,16 +26,16 @@ static cw_status make_levels(void *state, cw_mesh *levels, cw_error *err)
     const char *path = s->input.volume.path;
     cli_made *made = s->output.report.made;
     made->iso = s->args->iso.value[0];
-    r->levels = levels;
-    cw_status st =
-        cli_extract_run_pipeline(s, NULL, made, (cw_pipeline_sink){take_level, r}, err);
+    r->taken.levels = levels;
+    cw_status st = cli_extract_run_pipeline(s, NULL, made, cli_level_sink(&r->taken), err);
     if (st == CW_OK)
-        st = move_levels(r, r->moved, err);
+        st = cli_move_taken(&r->taken, s->args->pivot, r->moved, err);
     if (st != CW_OK)
         return st;
-    cli_report_end(&s->output.report, "simplify", r->full.triangle_count, r->triangles);
-    cli_say("%s: %s triangles were extracted", path, cli_count(r->full.triangle_count));
-    st = cli_take_surface(&r->pieces, path, &r->full, err);
+    cli_report_end(&s->output.report, "simplify", r->taken.full.triangle_count,
+                   r->taken.triangles);
+    cli_say("%s: %s triangles were extracted", path, cli_count(r->taken.full.triangle_count));
+    st = cli_take_surface(&r->pieces, path, &r->taken.full, err);
     r->pieces.closed_mm = made->facts.handles.length_mm;
     return st == CW_OK && s->args->check
                ? cli_measure_pieces(&r->pieces, (int)s->args->input.threads, err)
@@ -84,7 +52,7 @@ static cw_status measure_level(lod_run *r, cli_made *made, const cw_mesh *level,
     cw_status st =
         cli_compare_pieces(&r->pieces, (int)r->run->args->input.threads, &made->compared, err);
     if (st == CW_OK)
-        cli_report_end(report, "measure", r->full.triangle_count, level->triangle_count);
+        cli_report_end(report, "measure", r->taken.full.triangle_count, level->triangle_count);
     return st;
 }
 
@@ -103,7 +71,7 @@ static cw_status finish_level(void *state, cli_made *made, cw_mesh *level, cw_er
 {
     lod_run *r = state;
     made->iso = r->run->args->iso.value[0];
-    made->facts = r->facts[level - r->levels];
+    made->facts = r->taken.facts[level - r->taken.levels];
     memcpy(made->pivot, r->moved, sizeof made->pivot);
     made->least_mm3 = r->run->output.report.made->least_mm3;
     return r->run->args->check ? hold_level(r, made, level, err) : CW_OK;
@@ -126,8 +94,8 @@ static cw_status deliver_levels(void *state, size_t file, const cw_part *parts, 
 {
     lod_run *r = state;
     cli_extract_run *s = r->run;
-    const cli_counts *lod = &s->args->lod;
-    const bool all = file == lod->count;
+    const cli_counts *lod = &r->taken.lod;
+    const bool all = file == r->taken.lod.count;
     cli_making making;
     char simplified[CLI_MAX_COUNTS * 24];
     cw_provenance lines[CLI_EXTRACT_PROVENANCE];
@@ -152,21 +120,25 @@ static cw_status deliver_levels(void *state, size_t file, const cw_part *parts, 
 
 cw_status cli_extract_make_lod(cli_extract_run *s, cw_error *err)
 {
-    lod_run r = {.run = s};
-    cli_detail_levels levels = {.lod = &s->args->lod,
+    lod_run r = {.run = s,
+                 .taken = {.lod = s->args->lod, .drops_equal = s->args->fills_levels}};
+    cli_detail_levels levels = {.lod = &r.taken.lod,
                                 .name = s->args->name,
                                 .files = &s->output.files,
                                 .report = &s->output.report,
                                 .pieces = &r.pieces,
                                 .is_budget = cli_extract_asset(s->args),
-                                .textures = &s->output.maps.textures,
+                                .maps = &r.taken.maps,
                                 .make = make_levels,
                                 .finish = finish_level,
                                 .deliver = deliver_levels,
                                 .user = &r};
     cw_status st = cli_make_detail_levels(&levels, err);
+    if (st == CW_OK)
+        st = cli_write_maps(&r.taken.maps, s->output.files.path[s->output.files.count - 1],
+                            s->args->no_clobber, err);
     cli_free_detail_levels(&levels);
     cli_free_pieces(&r.pieces);
-    cw_mesh_free(&r.full);
+    cli_free_taken(&r.taken);
     return st;
 }

@@ -156,6 +156,27 @@ static void add_words(char *text, const char *relation, const char *names)
         snprintf(text + used, TEXT_BYTES - used, "; %s %s", relation, names);
 }
 
+/* Returns true if a list "--a, --b" holds a name of `length` characters. */
+static bool holds_name(const char *list, const char *name, size_t length)
+{
+    for (const char *at = list; *at; at += strcspn(at, ","), at += strspn(at, ", "))
+        if (strcspn(at, ",") == length && memcmp(at, name, length) == 0)
+            return true;
+    return false;
+}
+
+/* Appends the names of a list that another one does not hold yet. */
+static void add_names(char *list, size_t size, const char *names)
+{
+    for (const char *at = names; *at;) {
+        const size_t length = strcspn(at, ","), used = strlen(list);
+        if (!holds_name(list, at, length))
+            snprintf(list + used, size - used, "%s%.*s", used ? ", " : "", (int)length, at);
+        at += length;
+        at += strspn(at, ", ");
+    }
+}
+
 const char *cli_option_about(const cli_command *command, const cli_option *option)
 {
     static char text[TEXT_BYTES];
@@ -169,10 +190,9 @@ const char *cli_option_about(const cli_command *command, const cli_option *optio
             print_terms(command, rule->others, " or ", false, names, sizeof names);
             add_words(text, "needs", names);
         } else if (rule->relation == CLI_EXCLUDES && (is_first || is_other)) {
-            const size_t used = strlen(not_with);
             print_terms(command, is_first ? rule->others : rule->options, ", ", false, names,
                         sizeof names);
-            snprintf(not_with + used, sizeof not_with - used, "%s%s", used ? ", " : "", names);
+            add_names(not_with, sizeof not_with, names);
         }
     }
     if (*not_with)

@@ -21,13 +21,19 @@ const cli_synonym cli_synonyms[] = {
     {"label|segment|mask|atlas", NULL, "--labels|--names|label|--inside",
      "'extract --labels all' makes a closed mesh of each label of a label map or a mask. An "
      "isovalue joins all labels above it."},
-    {"uv|unwrap|texture|texcoord|chart|lightmap|bake|normal map|game", "uv",
-     "uv|--atlas|--texel-density|--margin|--bake",
-     "'uv' gives a mesh texture coordinates, for GLB and OBJ, and a normal map, for GLB."},
+    {"uv|unwrap|texture|texcoord|chart|lightmap|bake|normal map|occlusion|curvature", "uv",
+     "uv|--uv|--atlas|--texel-density|--margin|--bake|--maps",
+     "'uv' gives a mesh texture coordinates, for GLB and OBJ, and maps of a full mesh, for GLB. "
+     "'extract --uv --maps' does so with a surface."},
+    {"game|engine|unity|unreal|godot|asset|vr|headset", NULL,
+     "--profile|--lod|--pivot|--close-handles|uv|--compress",
+     "'extract --profile game' and 'convert --profile game' make an asset: levels of detail, "
+     "texture coordinates and a normal map in one GLB."},
+    {"pivot|origin|centre|center", "pivot", "--pivot|--local", NULL},
     {"look|appearance|psnr|ciede|delta e|visual|image difference|similar", NULL,
      "--looks|--bake",
      "'check --reference MESH --looks none' measures how alike two meshes look: PSNR and CIEDE2000 of eight "
-     "views, with normal maps and without."},
+     "views, with the pictures on them and without."},
     {"denois|despeckl", NULL, "--denoise|smooth|--min-volume|--drop-components",
      "'extract --denoise' smooths the values of volumes, 'smooth' meshes. --min-volume and "
      "--drop-components remove small components."},

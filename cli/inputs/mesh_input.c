@@ -6,6 +6,7 @@
 #include "cli/framework/quantity.h"
 #include "core/base/status.h"
 
+#include <cubewright/atlas.h>
 #include <cubewright/quality.h>
 
 #include <sha2.h>
@@ -115,8 +116,32 @@ static double file_bytes(const char *path)
     return stat(path, &info) == 0 ? (double)info.st_size : 0;
 }
 
-static cw_status read_quietly(const char *path, const char *reader, const cli_input *input,
-                              bool parts, bool reference, cli_mesh *mesh, cw_error *err)
+bool cli_is_textured(const cli_mesh *m)
+{
+    bool found = cw_mesh_attribute_find(&m->mesh, CW_TEXTURE_COORDINATES);
+    for (size_t p = 0; p < m->part_count; p++)
+        found = found || cw_mesh_attribute_find(m->parts[p].mesh, CW_TEXTURE_COORDINATES);
+    return found;
+}
+
+/* Reads the pictures of a textured mesh that is merged: one mesh has one set of them. */
+static cw_status read_pictures(const char *path, const cw_mesh_read_desc *desc, cli_mesh *m,
+                               cw_error *err)
+{
+    bool differ = false;
+    cw_status st = cw_parts_read(path, desc, &m->pictured, &m->pictured_count, NULL, err);
+    for (size_t p = 1; st == CW_OK && p < m->pictured_count; p++)
+        differ = differ || m->pictured[p].textures != m->pictured->textures;
+    if (st == CW_OK && differ)
+        cli_say("%s: pictures left out: %zu parts have several, and are taken as one mesh",
+                path, m->pictured_count);
+    else if (st == CW_OK && m->pictured_count)
+        m->textures = m->pictured->textures;
+    return st;
+}
+
+static cw_mesh_read_desc make_desc(const char *path, const char *reader, const cli_input *input,
+                                   bool reference)
 {
     cw_mesh_read_desc desc = {
         .reader = reader,
@@ -131,17 +156,21 @@ static cw_status read_quietly(const char *path, const char *reader, const cli_in
     if (reference)
         desc.claim.rule = CW_CLAIM_FILL;
     desc.progress = cli_progress(file_bytes(path) / 1e6, "MB");
-    *mesh = (cli_mesh){.path = path};
-    return parts ? cw_parts_read(path, &desc, &mesh->parts, &mesh->part_count, &mesh->file, err)
-                 : cw_mesh_read(path, &desc, &mesh->mesh, &mesh->file, err);
+    return desc;
 }
 
 static cw_status read_file(const char *path, const char *reader, const cli_input *input,
                            bool parts, bool reference, cli_mesh *mesh, cw_error *err)
 {
-    const cw_status st = read_quietly(path, reader, input, parts, reference, mesh, err);
+    const cw_mesh_read_desc desc = make_desc(path, reader, input, reference);
+    *mesh = (cli_mesh){.path = path};
+    cw_status st =
+        parts ? cw_parts_read(path, &desc, &mesh->parts, &mesh->part_count, &mesh->file, err)
+              : cw_mesh_read(path, &desc, &mesh->mesh, &mesh->file, err);
     if (st == CW_OK)
         say_what_was_found(mesh);
+    if (st == CW_OK && !parts && !reference && cli_is_textured(mesh))
+        st = read_pictures(path, &desc, mesh, err);
     return st;
 }
 
@@ -166,7 +195,10 @@ cw_status cli_read_parts(const char *path, const char *reader, const cli_input *
 cw_status cli_read_parts_again(const cli_mesh *whole, bool is_reference, const char *reader,
                                const cli_input *input, cli_mesh *parts, cw_error *err)
 {
-    return read_quietly(whole->path, reader, input, true, is_reference, parts, err);
+    const cw_mesh_read_desc desc = make_desc(whole->path, reader, input, is_reference);
+    *parts = (cli_mesh){.path = whole->path};
+    return cw_parts_read(whole->path, &desc, &parts->parts, &parts->part_count, &parts->file,
+                         err);
 }
 
 cw_status cli_orient_mesh(cli_mesh *m, int threads, cw_error *err)
@@ -189,6 +221,9 @@ void cli_free_mesh(cli_mesh *mesh)
 {
     cw_mesh_free(&mesh->mesh);
     cw_parts_free(mesh->parts, mesh->part_count);
+    cw_parts_free(mesh->pictured, mesh->pictured_count);
+    mesh->pictured = NULL;
+    mesh->pictured_count = 0;
     mesh->parts = NULL;
     mesh->part_count = 0;
 }

@@ -45,6 +45,9 @@ typedef struct cli_mesh {
     cw_part *parts; /* owned; NULL when they are merged */
     size_t part_count;
     cw_mesh_file file;
+    cw_part *pictured; /* the parts of a textured mesh that is merged; owned; or NULL */
+    size_t pictured_count;
+    const cw_textures *textures; /* of the merged mesh, if all parts have the same; else NULL */
 } cli_mesh;
 
 /* Reads a mesh, all parts merged, and says what was found. Errors name the file.
@@ -73,6 +76,9 @@ CW_NODISCARD cw_status cli_orient_mesh(cli_mesh *mesh, int threads, cw_error *er
 
 /* Counts the triangles of all parts. */
 size_t cli_mesh_triangles(const cli_mesh *mesh);
+
+/* Returns true if some of it has texture coordinates. */
+bool cli_is_textured(const cli_mesh *mesh);
 
 /* Frees a mesh that was read; a zeroed one is allowed. */
 void cli_free_mesh(cli_mesh *mesh);

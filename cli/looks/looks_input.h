@@ -2,16 +2,17 @@
 #ifndef CLI_LOOKS_LOOKS_INPUT_H
 #define CLI_LOOKS_LOOKS_INPUT_H
 
-#include "cli/looks/glb_maps.h"
+#include "cli/inputs/mesh_input.h"
 
 #include <cubewright/appearance.h>
+
+enum { CLI_LOOKS_MAPS = 3 };
 
 typedef struct cli_looks {
     cw_surface_look *surfaces; /* count of them; owned */
     size_t count;
-    cli_mesh parts; /* owned; empty where the merged mesh serves */
-    cli_glb_maps glb;
-    cw_image *maps; /* owned; of each surface */
+    cli_mesh parts;                   /* owned; empty where the merged mesh serves */
+    cw_image (*maps)[CLI_LOOKS_MAPS]; /* of each surface; owned */
     bool has_maps;
 } cli_looks;
 

@@ -147,6 +147,11 @@ static void find_switch(cli_made *made)
         made->switch_m = cli_find_switch_m(cw_mesh_comparison_max(&made->compared.with_input));
 }
 
+static const cw_textures *find_textures(const cli_detail_levels *d)
+{
+    return d->maps ? cli_find_textures(d->maps) : d->pieces->piece->textures;
+}
+
 static cw_status make_level(cli_detail_levels *d, size_t n, cli_made *made, cw_error *err)
 {
     cw_mesh *level = &d->mesh[n];
@@ -157,14 +162,19 @@ static cw_status make_level(cli_detail_levels *d, size_t n, cli_made *made, cw_e
         st = check_levels(d, err);
     if (st != CW_OK)
         return st;
-    cli_report_missed(d->report, d->pieces, d->lod->n[n], level->triangle_count,
-                      d->keeps_border);
+    if (d->is_budget && level->triangle_count > d->lod->n[n])
+        cli_say("%s: %s has %s triangles in place of %s: its topology and its seams need them",
+                d->pieces->path, level_names[n], cli_count(level->triangle_count),
+                cli_count(d->lod->n[n]));
+    else
+        cli_report_missed(d->report, d->pieces, d->lod->n[n], level->triangle_count,
+                          d->keeps_border);
     st = d->finish(d->user, made, level, err);
     find_switch(made);
     if (st == CW_OK)
         st = order_for_drawing(d, level, err);
     const cw_part part = {
-        .mesh = level, .name = d->pieces->piece->name, .textures = d->textures};
+        .mesh = level, .name = d->pieces->piece->name, .textures = find_textures(d)};
     return st == CW_OK ? d->deliver(d->user, n, &part, 1, err) : st;
 }
 
@@ -184,7 +194,7 @@ static cw_status deliver_together(cli_detail_levels *d, const char *path, cw_err
             .level = n,
             .max_error_mm = cw_mesh_comparison_max(c),
             .rms_error_mm = cw_mesh_comparison_rms(c),
-            .textures = d->textures,
+            .textures = find_textures(d),
         };
     }
     cw_status st = d->deliver(d->user, d->lod->count, parts, d->lod->count, err);
@@ -204,14 +214,16 @@ static void remove_written(const cli_detail_levels *d, size_t count)
 
 cw_status cli_make_detail_levels(cli_detail_levels *d, cw_error *err)
 {
-    const size_t count = d->lod->count, files = d->files->count;
-    const bool together = files < count; /* levels have no file of their own */
+    const size_t files = d->files->count;
+    const bool together = files < d->lod->count; /* levels have no file of their own */
+    const char *all = files == d->lod->count ? NULL : d->files->path[files - 1];
     cw_status st = CW_OK;
-    for (size_t n = 0; n < (together ? count + 1 : files) && st == CW_OK; n++) {
-        const char *path = !together ? d->files->path[n] : n < count ? NULL : *d->files->path;
+    for (size_t n = 0; n < d->lod->count + (all ? 1 : 0) && st == CW_OK; n++) {
+        const bool is_level = n < d->lod->count;
+        const char *path = !is_level ? all : together ? NULL : d->files->path[n];
         cli_made *made = cli_report_next(d->report, path, 0);
-        made->name = n < count ? level_names[n] : "all";
-        st = n < count ? make_level(d, n, made, err) : deliver_together(d, path, err);
+        made->name = is_level ? level_names[n] : "all";
+        st = is_level ? make_level(d, n, made, err) : deliver_together(d, path, err);
         if (st != CW_OK) {
             made->error = *err;
             if (!made->written) /* else it is whole, but less exact than asked for */

@@ -2,20 +2,21 @@
 #ifndef CLI_RESULTS_DETAIL_LEVELS_H
 #define CLI_RESULTS_DETAIL_LEVELS_H
 
+#include "cli/assets/texture_options.h"
 #include "cli/results/mesh_parts.h"
 #include "cli/results/output_names.h"
 
 /* The levels of --lod on their way from a mesh to files, and the steps of the command that makes
  * them. Zero it, and set the first fields. Free it with cli_free_detail_levels(). */
 typedef struct cli_detail_levels {
-    const cli_counts *lod;
-    const char *name;            /* of the object inside the file of all; NULL: that file's */
-    const cli_outputs *files;    /* as cli_name_detail_levels() names them */
-    cli_report *report;          /* with room for a mesh more than levels */
-    const cli_pieces *pieces;    /* the mesh is the only piece, at the latest after `make` */
-    bool keeps_border;           /* the border of the mesh stays as it is */
-    bool is_budget;              /* more triangles than asked for are an error, no warning */
-    const cw_textures *textures; /* of all levels; NULL: none */
+    const cli_counts *lod;    /* those that `make` makes: it may leave some out */
+    const char *name;         /* of the object inside the file of all; NULL: that file's */
+    const cli_outputs *files; /* as cli_name_detail_levels() names them */
+    cli_report *report;       /* with room for a mesh more than levels */
+    const cli_pieces *pieces; /* the mesh is the only piece, at the latest after `make` */
+    bool keeps_border;        /* the border of the mesh stays as it is */
+    bool is_budget;           /* more triangles than asked for are an error, no warning */
+    const cli_maps *maps;     /* of all levels, made with them; NULL: none */
     /* Makes the meshes of all levels, when the report has begun that of the first. */
     cw_status (*make)(void *user, cw_mesh *levels, cw_error *err);
     /* Checks, measures and shades a level. */

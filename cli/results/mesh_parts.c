@@ -55,7 +55,8 @@ static cw_status take_parts(cli_pieces *p, const cli_mesh *m, bool weld, cw_erro
         cli_piece *piece = &p->piece[p->count];
         *piece = (cli_piece){.input = m->parts ? *m->parts[n].mesh : m->mesh,
                              .name = m->parts ? m->parts[n].name : NULL,
-                             .label = m->parts ? m->parts[n].label : NULL};
+                             .label = m->parts ? m->parts[n].label : NULL,
+                             .textures = m->parts ? m->parts[n].textures : m->textures};
         if (weld)
             st = cw_mesh_weld(&piece->input, &merged, err);
         p->merged += merged;
@@ -194,13 +195,38 @@ cw_status cli_hold_pieces(const cli_pieces *p, int threads, cw_error *err)
     return in_file(p, st, err);
 }
 
+/* Measures how far the texture of a piece moved, where both sides have one. */
+static cw_status compare_texture(const cli_piece *piece, int threads, cli_comparison *c,
+                                 cw_error *err)
+{
+    cw_texture_distance d, *sum = &c->texture;
+    if (!cw_mesh_attribute_find(&piece->out, CW_TEXTURE_COORDINATES) ||
+        !cw_mesh_attribute_find(&piece->input, CW_TEXTURE_COORDINATES))
+        return CW_OK;
+    cw_status st = cw_mesh_texture_distance(&piece->out, &piece->input, threads, &d, err);
+    if (st != CW_OK)
+        return st == CW_ERR_EMPTY || st == CW_ERR_ARGUMENT ? CW_OK : st;
+    const size_t samples = sum->samples + d.samples;
+    sum->mean_mm += (d.mean_mm - sum->mean_mm) * (double)d.samples / (double)samples;
+    if (!c->has_texture || d.max_mm > sum->max_mm) {
+        sum->max_mm = d.max_mm;
+        sum->side_mm = d.side_mm;
+    }
+    sum->samples = samples;
+    c->has_texture = true;
+    return CW_OK;
+}
+
 cw_status cli_compare_pieces(const cli_pieces *p, int threads, cli_comparison *c, cw_error *err)
 {
     cw_status st = CW_OK;
     c->diagonal_mm = p->diagonal_mm;
-    for (size_t n = 0; n < p->count && st == CW_OK; n++)
+    for (size_t n = 0; n < p->count && st == CW_OK; n++) {
         st = cli_compare(&p->piece[n].out, &p->piece[n].input, c->promised_mm / 100, threads, c,
                          err);
+        if (st == CW_OK)
+            st = compare_texture(&p->piece[n], threads, c, err);
+    }
     const double max = cw_mesh_comparison_max(&c->with_input);
     if (st == CW_OK && c->promised_mm > 0 && max > c->promised_mm)
         st = cwi_fail(err, CW_ERR_CHECK,
@@ -240,7 +266,7 @@ cw_status cli_list_parts(const cli_pieces *p, cw_part **parts, cw_error *err)
         (*parts)[n] = (cw_part){.mesh = &p->piece[n].out,
                                 .name = p->piece[n].name,
                                 .label = p->piece[n].label,
-                                .textures = p->textures};
+                                .textures = p->textures ? p->textures : p->piece[n].textures};
     return CW_OK;
 }
 

@@ -10,9 +10,10 @@ typedef struct cli_piece {
     cw_mesh input; /* its arrays are those of the cli_mesh, welded, unless owns_input */
     bool owns_input;
     const char *name;
-    const cw_label *label; /* that of the part; borrowed */
-    cw_quality before;     /* of the input */
-    cw_mesh out;           /* owned */
+    const cw_label *label;       /* that of the part; borrowed */
+    const cw_textures *textures; /* the same */
+    cw_quality before;           /* of the input */
+    cw_mesh out;                 /* owned */
 } cli_piece;
 
 typedef struct cli_pieces {
@@ -21,7 +22,7 @@ typedef struct cli_pieces {
     size_t count, triangles;     /* these of all, before */
     size_t merged, dropped;      /* vertices; components */
     double diagonal_mm;          /* of the box of all, as they were read */
-    const cw_textures *textures; /* of all, borrowed; NULL: none */
+    const cw_textures *textures; /* of all in place of their own, borrowed; NULL: none */
     double closed_mm;            /* handles with loops up to this were closed; 0: none were */
 } cli_pieces;
 

@@ -22,12 +22,19 @@
 #include <sys/stat.h>
 
 const struct cli_kept cli_kept[] = {
-    {CW_KEEPS_PARTS, "parts"},         {CW_KEEPS_SHARING, "shared vertices"},
-    {CW_KEEPS_NORMALS, "normals"},     {CW_KEEPS_COLORS, "colours"},
-    {CW_KEEPS_SCALARS, "scalars"},     {CW_KEEPS_LABELS, "labels"},
-    {CW_KEEPS_AFFINE, "affine"},       {CW_KEEPS_FACE_COLORS, "face colours"},
-    {CW_KEEPS_OPACITY, "opacity"},     {CW_KEEPS_TEXTURE, "texture coordinates"},
-    {CW_KEEPS_PICTURES, "normal map"}, {CW_KEEPS_ATTRIBUTES, "attributes"},
+    {CW_KEEPS_PARTS, "parts"},
+    {CW_KEEPS_SHARING, "shared vertices"},
+    {CW_KEEPS_NORMALS, "normals"},
+    {CW_KEEPS_COLORS, "colours"},
+    {CW_KEEPS_SCALARS, "scalars"},
+    {CW_KEEPS_LABELS, "labels"},
+    {CW_KEEPS_AFFINE, "affine"},
+    {CW_KEEPS_FACE_COLORS, "face colours"},
+    {CW_KEEPS_OPACITY, "opacity"},
+    {CW_KEEPS_TEXTURE, "texture coordinates"},
+    {CW_KEEPS_PICTURES, "pictures"},
+    {CW_KEEPS_MATERIALS, "metallic-roughness and occlusion pictures"},
+    {CW_KEEPS_ATTRIBUTES, "attributes"},
 };
 const size_t cli_kept_count = sizeof cli_kept / sizeof *cli_kept;
 
@@ -180,6 +187,17 @@ static void put_comparison(cli_json *j, const cli_comparison *c)
                           .from_reference = c->made ? &c->with_input.from_reference : NULL});
 }
 
+static void put_texture(cli_json *j, const cw_texture_distance *d)
+{
+    cli_json_open(j, "texture", '{');
+    cli_json_number(j, "max_moved", d->max_mm);
+    cli_json_number(j, "mean_moved", d->mean_mm);
+    cli_json_number(j, "side", d->side_mm);
+    cli_json_count(j, "samples", d->samples);
+    cli_json_text(j, "unit", "mm");
+    cli_json_close(j, '}');
+}
+
 static void put_views(cli_json *j, const cli_proof *p)
 {
     cli_json_open(j, "views", '[');
@@ -246,6 +264,8 @@ static void put_facts(cli_json *j, const cli_made *m)
         cli_json_number(j, "switch_distance_m", m->switch_m);
     if (m->pivot[0] != 0 || m->pivot[1] != 0 || m->pivot[2] != 0)
         cli_json_numbers(j, "moved_to_pivot_mm", m->pivot, 3);
+    if (m->compared.has_texture)
+        put_texture(j, &m->compared.texture);
     cli_json_stages(j, &m->facts, m->least_mm3);
     if (m->print.count)
         cli_json_verdicts(j, m->print.verdicts, m->print.count);

@@ -6,6 +6,7 @@
 #include "cli/inputs/time_series.h"
 #include "cli/results/printability.h"
 
+#include <cubewright/atlas.h>
 #include <cubewright/check.h>
 #include <cubewright/pipeline.h>
 
@@ -27,9 +28,11 @@ typedef struct cli_comparison {
     cw_distance to_field;
     bool has_full_field; /* that of what it was made of, by the same measure */
     cw_distance full_to_field;
-    double diagonal_mm; /* of the input's box */
-    double promised_mm; /* 0: no error was promised */
-    const char *other;  /* what it was made of; default: the input */
+    bool has_texture;            /* there is the next: of both meshes */
+    cw_texture_distance texture; /* over all parts */
+    double diagonal_mm;          /* of the input's box */
+    double promised_mm;          /* 0: no error was promised */
+    const char *other;           /* what it was made of; default: the input */
 } cli_comparison;
 
 enum { CLI_MAX_VIEWS = 64 }; /* of one mesh */

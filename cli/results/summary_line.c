@@ -140,10 +140,19 @@ static void print_switch(const cli_made *made)
                    made->switch_m);
 }
 
+/* Texels along the side of a texture, for distances in texels. */
+enum { TEXELS = 2048 };
+
 static void print_comparison(const cli_comparison *c)
 {
     if (c->made)
         print_distance(c);
+    if (c->has_texture)
+        cli_result(
+            "; texture moved by at most %.3g mm, mean %.2g mm (%.2g and %.2g texels of %d)",
+            c->texture.max_mm, c->texture.mean_mm,
+            c->texture.max_mm / c->texture.side_mm * TEXELS,
+            c->texture.mean_mm / c->texture.side_mm * TEXELS, TEXELS);
     if (c->has_field)
         cli_result("; distance to the volume's isosurface at most %.3g mm, RMS %.3g mm",
                    c->to_field.max_mm, c->to_field.rms_mm);

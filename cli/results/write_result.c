@@ -162,7 +162,7 @@ static void report_rounded(const cli_made *made, const cw_write_loss *loss)
 
 static void report_dropped(const cli_made *made, const cw_write_loss *loss)
 {
-    char list[128] = "";
+    char list[256] = "";
     size_t used = 0;
     for (size_t i = 0; i < cli_kept_count; i++)
         if (made->dropped & cli_kept[i].flag)

@@ -171,7 +171,7 @@ static cw_status draw_worst_view(cli_mesh_study *m, const cw_surface_look *refer
     if (st != CW_OK || !looks->has_maps)
         return st;
     for (size_t n = 0; n < looks->count; n++)
-        looks->surfaces[n].normal_map = looks->surfaces[n].color_map = NULL;
+        looks->surfaces[n] = (cw_surface_look){.mesh = looks->surfaces[n].mesh};
     return draw_looks(m, looks->surfaces, looks->count, &m->drawn_bare, err);
 }
 

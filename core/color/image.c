@@ -1,5 +1,5 @@
 /* Allocates images of bytes. */
-#include <cubewright/picture.h>
+#include "core/color/deep_image.h"
 
 #include "core/base/memory.h"
 #include "core/base/status.h"
@@ -18,10 +18,18 @@ cw_status cw_image_alloc(cw_image *image, size_t width, size_t height, cw_error 
     return CW_OK;
 }
 
+cw_status cwi_image_deepen(cw_image *image, cw_error *err)
+{
+    const size_t pixels = image->width * image->height;
+    image->deep = cwi_alloc_zeroed(pixels, 4 * sizeof *image->deep);
+    return image->deep ? CW_OK : cwi_fail_memory(err);
+}
+
 void cw_image_free(cw_image *image)
 {
     if (!image)
         return;
     cwi_free(image->pixels);
+    cwi_free(image->deep);
     *image = (cw_image){0};
 }

@@ -7,6 +7,7 @@
 #include "core/mesh/mesh_attributes.h"
 #include "core/mesh/weld.h"
 
+#include <cubewright/atlas.h>
 #include <cubewright/mesh.h>
 
 #include <math.h>
@@ -43,6 +44,25 @@ cw_status cwi_mesh_drop_marked(cw_mesh *mesh, const bool *marked, cw_error *err)
     return CW_OK;
 }
 
+/* Gives each corner the texture coordinate of its vertex, if there is one: vertices at one position, split
+ * along a seam, have several. */
+static cw_status move_texture_to_corners(cw_mesh *mesh, cw_error *err)
+{
+    cw_attribute *uv = cw_mesh_attribute_find(mesh, CW_TEXTURE_COORDINATES);
+    if (!uv || uv->on != CW_ON_VERTICES)
+        return CW_OK;
+    const size_t bytes = cwi_attribute_bytes(uv);
+    char *moved = cwi_alloc_array(3 * mesh->triangle_count, bytes);
+    if (!moved)
+        return cwi_fail_memory(err);
+    for (size_t c = 0; c < 3 * mesh->triangle_count; c++)
+        memcpy(moved + bytes * c, (const char *)uv->data + bytes * mesh->triangles[c], bytes);
+    cwi_free(uv->data);
+    uv->data = moved;
+    uv->on = CW_ON_CORNERS;
+    return CW_OK;
+}
+
 cw_status cw_mesh_weld(cw_mesh *mesh, size_t *merged, cw_error *err)
 {
     CWI_REQUIRE(err, mesh);
@@ -57,6 +77,11 @@ cw_status cw_mesh_weld(cw_mesh *mesh, size_t *merged, cw_error *err)
     size_t count = 0, kept = 0;
     for (size_t v = 0; v < mesh->vertex_count; v++)
         count += map[v] != v;
+    st = count ? move_texture_to_corners(mesh, err) : CW_OK;
+    if (st != CW_OK) {
+        cwi_free(map);
+        return st;
+    }
     for (size_t t = 0; t < mesh->triangle_count; t++) {
         uint32_t *c = mesh->triangles + 3 * t;
         for (int k = 0; k < 3; k++)

@@ -106,6 +106,20 @@ cw_status cwi_texture_add(cw_mesh *mesh, cw_on on, float (**uv)[2], cw_error *er
     return st;
 }
 
+cw_status cwi_texture_hide(const cw_mesh *mesh, cw_mesh *view, cw_error *err)
+{
+    const cw_attribute *uv = cwi_texture_of(mesh);
+    *view = *mesh;
+    view->attribute_count = 0;
+    view->attributes = cwi_alloc_array(mesh->attribute_count, sizeof *view->attributes);
+    if (!view->attributes)
+        return cwi_fail_memory(err);
+    for (size_t n = 0; n < mesh->attribute_count; n++)
+        if (&mesh->attributes[n] != uv)
+            view->attributes[view->attribute_count++] = mesh->attributes[n];
+    return CW_OK;
+}
+
 cw_status cwi_seams_find(const cw_mesh *mesh, cwi_texture_seams *seams, cw_error *err)
 {
     const size_t corners = 3 * mesh->triangle_count, most = mesh->vertex_count + corners;
@@ -165,16 +179,11 @@ cw_status cwi_split_seams(const cw_mesh *mesh, cw_mesh *copy, cw_error *err)
 {
     const cw_attribute *uv = cwi_texture_of(mesh);
     cwi_texture_seams seams;
-    cw_mesh like = *mesh; /* the same arrays, but for texture coordinates */
+    cw_mesh like = {0};
     *copy = (cw_mesh){0};
     cw_status st = cwi_seams_find(mesh, &seams, err);
-    like.attributes = cwi_alloc_array(mesh->attribute_count, sizeof *like.attributes);
-    like.attribute_count = 0;
-    for (size_t n = 0; like.attributes && n < mesh->attribute_count; n++)
-        if (&mesh->attributes[n] != uv)
-            like.attributes[like.attribute_count++] = mesh->attributes[n];
-    if (st == CW_OK && !like.attributes)
-        st = cwi_fail_memory(err);
+    if (st == CW_OK)
+        st = cwi_texture_hide(mesh, &like, err);
     if (st == CW_OK)
         st = copy_mesh(&seams, &like, copy, err);
     if (st == CW_OK)

@@ -25,6 +25,11 @@ const cw_attribute *cwi_texture_of(const cw_mesh *mesh);
  * Returns   CW_ERR_NO_MEMORY */
 CW_NODISCARD cw_status cwi_texture_add(cw_mesh *mesh, cw_on on, float (**uv)[2], cw_error *err);
 
+/* Makes a view of a mesh without its texture coordinates. It borrows all but the array of attributes, which
+ * is freed with cwi_free().
+ * Returns   CW_ERR_NO_MEMORY */
+CW_NODISCARD cw_status cwi_texture_hide(const cw_mesh *mesh, cw_mesh *view, cw_error *err);
+
 /* Numbers the places of a mesh with texture coordinates for each corner.
  * Returns  CW_ERR_NO_MEMORY; free with cwi_seams_free() in any case */
 CW_NODISCARD cw_status cwi_seams_find(const cw_mesh *mesh, cwi_texture_seams *seams,

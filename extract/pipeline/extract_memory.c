@@ -63,6 +63,8 @@ static cw_status extract_whole(cwi_pipeline *p, cw_mesh *mesh, cw_error *err)
 
 cw_status cwi_extract_surface(cwi_pipeline *p, cw_mesh *mesh, cw_error *err)
 {
+    if (p->given)
+        return cwi_copy_surface(p, mesh, err);
     if (p->slices)
         return cwi_extract_slices(p, mesh, err);
     const bool by_slabs = p->desc->simplify && !p->needs_whole &&

@@ -98,7 +98,7 @@ static cw_status make_full(const cwi_pipeline *p, const cw_volume *volume, bool 
 static bool adds_normals(const cwi_pipeline *p)
 {
     const cw_pipeline_desc *d = p->desc;
-    return (d->simplify || d->lod_count) && !d->extract.no_normals && !p->labels &&
+    return (d->simplify || d->lod_count) && !d->extract.no_normals && !p->labels && !p->given &&
            !(cwi_spoils(d) & CWI_FIELD_NORMALS) &&
            (p->slices || cwi_volume_expect_dense(p->volume, "normals", NULL) == CW_OK);
 }
@@ -138,8 +138,8 @@ void cwi_give_facts(const cwi_pipeline *p, cw_pipeline_facts *facts)
     facts->version = version;
 }
 
-static cw_status start_pipeline(cwi_pipeline *p, cw_surface_source source,
-                                cw_pipeline_sink sink, cw_pipeline_facts *facts, cw_error *err)
+cw_status cwi_start_pipeline(cwi_pipeline *p, cw_surface_source source, cw_pipeline_sink sink,
+                             cw_pipeline_facts *facts, cw_error *err)
 {
     cw_status st = cwi_begin_pipeline(p, source, sink, err);
     if (st == CW_OK)
@@ -157,7 +157,7 @@ cw_status cw_pipeline_run(const cw_volume *volume, cw_extractor *extractor,
     CWI_REQUIRE_VERSION(err, desc, 0);
     CWI_REQUIRE_VERSION(err, facts, 0);
     cwi_pipeline p = {.desc = desc, .volume = volume, .part = *volume, .extractor = extractor};
-    return start_pipeline(&p, CW_SOURCE_MEMORY, sink, facts, err);
+    return cwi_start_pipeline(&p, CW_SOURCE_MEMORY, sink, facts, err);
 }
 
 cw_status cw_pipeline_run_slices(const cw_slice_source *source, const cw_pipeline_desc *desc,
@@ -167,7 +167,7 @@ cw_status cw_pipeline_run_slices(const cw_slice_source *source, const cw_pipelin
     CWI_REQUIRE_VERSION(err, desc, 0);
     CWI_REQUIRE_VERSION(err, facts, 0);
     cwi_pipeline p = {.desc = desc, .slices = source};
-    return start_pipeline(&p, CW_SOURCE_SLICES, sink, facts, err);
+    return cwi_start_pipeline(&p, CW_SOURCE_SLICES, sink, facts, err);
 }
 
 static cw_status take_mesh(void *user, cw_pipeline_surface *surface,

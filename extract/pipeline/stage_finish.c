@@ -6,7 +6,7 @@
 cw_status cwi_add_normals(cwi_pipeline *p, cw_mesh *mesh, cw_error *err)
 {
     const cw_pipeline_desc *d = p->desc;
-    if (p->labels)
+    if (p->labels || (p->given && !mesh->normals))
         return cw_mesh_normals(mesh, err);
     if (!p->adds_normals || !mesh->triangle_count)
         return CW_OK;

@@ -21,8 +21,6 @@ cw_status cwi_simplify_surface(cwi_pipeline *p, cw_mesh *mesh, cw_error *err)
     return CW_OK;
 }
 
-/* Makes all levels, or with texture coordinates the first, which then gets them. */
-
 cw_status cwi_make_levels(cwi_pipeline *p, cw_mesh *mesh, cw_error *err)
 {
     const cw_pipeline_desc *d = p->desc;
@@ -32,6 +30,5 @@ cw_status cwi_make_levels(cwi_pipeline *p, cw_mesh *mesh, cw_error *err)
     p->levels = cwi_alloc_zeroed(d->lod_count, sizeof *p->levels);
     if (!p->levels)
         return cwi_fail_memory(err);
-    return cw_simplify_levels(mesh, &desc, d->lod, d->atlas ? 1 : d->lod_count, p->levels, NULL,
-                              err);
+    return cw_simplify_levels(mesh, &desc, d->lod, d->lod_count, p->levels, NULL, err);
 }

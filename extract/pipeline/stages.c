@@ -181,6 +181,8 @@ static const char *find_objection(cw_surface_source source, cw_stage stage, unsi
         return "needs the whole surface in memory";
     if (in_pieces && needs & VOXELS)
         return "needs all voxels in memory";
+    if (source == CW_SOURCE_MESH && needs & VOXELS)
+        return "needs the voxels of a surface";
     return source == CW_SOURCE_PARTS && !(needs & PARTS)
                ? "is for the whole surface; join the parts before"
                : NULL;

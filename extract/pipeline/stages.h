@@ -30,6 +30,7 @@ typedef struct cwi_pipeline {
     cw_extractor *extractor;       /* of the volume; or NULL */
     const cw_slice_source *slices; /* or NULL */
     const cw_pipeline_labels *labels; /* or NULL */
+    const cw_mesh *given;             /* the surface itself; or NULL */
     cw_mesh mesh;
     cw_mesh_spool *spool;        /* the surface, of slices; or NULL */
     cw_mesh full;                /* with maps: the surface before it was simplified */
@@ -76,6 +77,11 @@ static inline cw_progress cwi_begin_stage(const cwi_pipeline *p, cw_stage stage,
 CW_NODISCARD cw_status cwi_begin_pipeline(cwi_pipeline *p, cw_surface_source source,
                                           cw_pipeline_sink sink, cw_error *err);
 
+/* Runs the pipeline, and frees what it holds. */
+CW_NODISCARD cw_status cwi_start_pipeline(cwi_pipeline *p, cw_surface_source source,
+                                          cw_pipeline_sink sink, cw_pipeline_facts *facts,
+                                          cw_error *err);
+
 /* Finishes a surface by the stages that do, and gives it away. */
 CW_NODISCARD cw_status cwi_finish_surface(cwi_pipeline *p, cw_pipeline_surface *surface,
                                           cw_pipeline_sink sink, cw_error *err);
@@ -89,6 +95,7 @@ CW_NODISCARD cw_status cwi_expect_kept(const cwi_pipeline *p, cw_error *err);
 /* The functions of the rows, each in a file of its own or with its like. */
 cw_status cwi_draw_views(cwi_pipeline *p, cw_mesh *mesh, cw_error *err);
 cw_status cwi_extract_surface(cwi_pipeline *p, cw_mesh *mesh, cw_error *err);
+cw_status cwi_copy_surface(cwi_pipeline *p, cw_mesh *mesh, cw_error *err);
 cw_status cwi_extract_slices(cwi_pipeline *p, cw_mesh *mesh, cw_error *err);
 cw_status cwi_drop_small(cwi_pipeline *p, cw_mesh *mesh, cw_error *err);
 cw_status cwi_keep_largest(cwi_pipeline *p, cw_mesh *mesh, cw_error *err);

@@ -29,6 +29,7 @@ void cwi_arrays_free(cwi_arrays *arrays)
     cwi_free(arrays->normals);
     cwi_free(arrays->colors);
     cwi_free(arrays->texture);
+    cwi_free(arrays->tangents);
     cwi_free(arrays->triangles);
     *arrays = (cwi_arrays){0};
 }

@@ -10,7 +10,7 @@
 #include <string.h>
 
 /* A place in the texture is kept to 1 / 2^14 of its side: an eighth of a texel of 2048. */
-enum { NORMAL_BITS = 10, TEXTURE_BITS = 14, LEVEL = 7 };
+enum { NORMAL_BITS = 10, TEXTURE_BITS = 14, TANGENT_BITS = 10, LEVEL = 7 };
 
 static bool names_a_vertex_twice(const uint32_t *triangle)
 {
@@ -63,8 +63,8 @@ static cw_status expect_memory(int bits, cw_error *err)
 }
 
 static cw_status verify_decoded(const cw_mesh *mesh, const float *texture,
-                                const cwi_quantization_grid *grid, const cwi_arrays *a,
-                                double *normal_degrees, cw_error *err)
+                                const float (*tangents)[4], const cwi_quantization_grid *grid,
+                                const cwi_arrays *a, double *normal_degrees, cw_error *err)
 {
     const cwi_decoded decoded = {.vertex_count = a->vertex_count,
                                  .triangle_count = a->triangle_count,
@@ -74,14 +74,16 @@ static cw_status verify_decoded(const cw_mesh *mesh, const float *texture,
                                  .texture = a->texture,
                                  .texture_encoded = texture,
                                  .texture_bits = TEXTURE_BITS,
+                                 .tangents = a->tangents,
+                                 .tangents_encoded = (const float *)tangents,
                                  .triangles = a->triangles};
     return cwi_verify(mesh, grid, &decoded, normal_degrees, err);
 }
 
 cw_status cwi_draco_pack(const cw_mesh *mesh, const uint8_t *colors, const float *texture,
-                         const cwi_quantization_grid *grid, const char *comment,
-                         const cw_write_desc *desc, cwi_draco_packed *packed,
-                         cw_compressed *facts, cw_error *err)
+                         const float (*tangents)[4], const cwi_quantization_grid *grid,
+                         const char *comment, const cw_write_desc *desc,
+                         cwi_draco_packed *packed, cw_compressed *facts, cw_error *err)
 {
     const cwi_draco_functions *draco;
     const cwi_arrays arrays = {.vertex_count = mesh->vertex_count,
@@ -90,10 +92,12 @@ cw_status cwi_draco_pack(const cw_mesh *mesh, const uint8_t *colors, const float
                                .normals = mesh->normals,
                                .colors = (uint8_t *)(uintptr_t)colors,
                                .texture = (float *)(uintptr_t)texture,
+                               .tangents = (float *)(uintptr_t)tangents,
                                .triangles = mesh->triangles};
     const cwi_draco_settings settings = {.grid = *grid,
                                          .normal_bits = NORMAL_BITS,
                                          .texture_bits = TEXTURE_BITS,
+                                         .tangent_bits = TANGENT_BITS,
                                          .level = desc->level ? desc->level : LEVEL,
                                          .comment = comment};
     const double start = cwi_now_s();
@@ -109,7 +113,8 @@ cw_status cwi_draco_pack(const cw_mesh *mesh, const uint8_t *colors, const float
         st = draco->decode(packed->bytes, packed->size, &packed->ids, SIZE_MAX,
                            grid->bits ? grid : NULL, &packed->decoded, err);
     if (st == CW_OK)
-        st = verify_decoded(mesh, texture, grid, &packed->decoded, &facts->normal_degrees, err);
+        st = verify_decoded(mesh, texture, tangents, grid, &packed->decoded,
+                            &facts->normal_degrees, err);
     facts->encode_s += encoded - start;
     facts->decode_s += cwi_now_s() - encoded;
     return st;
@@ -131,8 +136,9 @@ static cw_status verify_integers(const cw_mesh *mesh, int bits, cwi_arrays *deco
     const cwi_quantization_grid grid = {
         .range = (float)((1u << bits) - 1), .bits = bits, .step = 1};
     decoded->grid_points = copy_integers(decoded->positions, decoded->vertex_count);
-    return decoded->grid_points ? verify_decoded(mesh, NULL, &grid, decoded, &no_normals, err)
-                                : cwi_fail_memory(err);
+    return decoded->grid_points
+               ? verify_decoded(mesh, NULL, NULL, &grid, decoded, &no_normals, err)
+               : cwi_fail_memory(err);
 }
 
 cw_status cwi_draco_pack_integers(const cw_mesh *mesh, int bits, const cw_write_desc *desc,

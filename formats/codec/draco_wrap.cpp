@@ -100,6 +100,8 @@ void set_options(draco::Encoder &encoder, const cwi_draco_settings &s, bool on_g
     encoder.SetAttributeQuantization(draco::GeometryAttribute::COLOR, COLOR_BITS);
     if (s.texture_bits)
         encoder.SetAttributeQuantization(draco::GeometryAttribute::TEX_COORD, s.texture_bits);
+    if (s.tangent_bits)
+        encoder.SetAttributeQuantization(draco::GeometryAttribute::GENERIC, s.tangent_bits);
 }
 
 cw_status encode(const cwi_arrays *from, const cwi_draco_settings *settings,
@@ -113,7 +115,7 @@ cw_status encode(const cwi_arrays *from, const cwi_draco_settings *settings,
         draco::Encoder encoder;
         draco::EncoderBuffer buffer;
         const size_t count = from->vertex_count;
-        *ids = {-1, -1, -1, -1};
+        *ids = {-1, -1, -1, -1, -1};
         mesh.set_num_points(uint32_t(count));
         add_faces(mesh, *from);
         // Neuroglancer takes no other integers than signed ones of 32 bits.
@@ -132,6 +134,9 @@ cw_status encode(const cwi_arrays *from, const cwi_draco_settings *settings,
         if (from->texture)
             ids->texture = add_attribute(mesh, draco::GeometryAttribute::TEX_COORD,
                                          draco::DT_FLOAT32, 2, false, from->texture, count);
+        if (from->tangents)
+            ids->tangent = add_attribute(mesh, draco::GeometryAttribute::GENERIC,
+                                         draco::DT_FLOAT32, 4, false, from->tangents, count);
         if (settings->comment) {
             auto metadata = std::make_unique<draco::GeometryMetadata>();
             metadata->AddEntryString(COMMENT, settings->comment);
@@ -179,7 +184,7 @@ cwi_draco_ids find_all(const draco::Mesh &mesh)
     return {find_first(mesh, draco::GeometryAttribute::POSITION, 3),
             find_first(mesh, draco::GeometryAttribute::NORMAL, 3),
             find_first(mesh, draco::GeometryAttribute::COLOR, 3),
-            find_first(mesh, draco::GeometryAttribute::TEX_COORD, 2)};
+            find_first(mesh, draco::GeometryAttribute::TEX_COORD, 2), -1};
 }
 
 // Copies some numbers of each point; returns false where one has no value.
@@ -245,10 +250,12 @@ cw_status copy_mesh(const draco::Mesh &mesh, const cwi_draco_ids &ids,
     const draco::PointAttribute *positions = find(mesh, ids.position, 3),
                                 *normals = find(mesh, ids.normal, 3),
                                 *colors = find(mesh, ids.color, 3),
-                                *texture = find(mesh, ids.texture, 2);
+                                *texture = find(mesh, ids.texture, 2),
+                                *tangents = find(mesh, ids.tangent, 4);
     const size_t count = mesh.num_points();
     if (!positions || (ids.normal >= 0 && !normals) || (ids.color >= 0 && !colors) ||
-        (ids.texture >= 0 && !texture) || (colors && colors->num_components() > 4))
+        (ids.texture >= 0 && !texture) || (ids.tangent >= 0 && !tangents) ||
+        (colors && colors->num_components() > 4))
         return cwi_fail(err, CW_ERR_FORMAT, "the Draco data lack an attribute that is named");
     if (grid && !is_on_grid(*positions, *grid))
         return cwi_fail(err, CW_ERR_CHECK,
@@ -262,14 +269,16 @@ cw_status copy_mesh(const draco::Mesh &mesh, const cwi_draco_ids &ids,
         !allocate(to.triangles, to.triangle_count, 3) ||
         (normals && !allocate(to.normals, count, 3)) ||
         (colors && !allocate(to.colors, count, 4)) ||
-        (texture && !allocate(to.texture, count, 2)))
+        (texture && !allocate(to.texture, count, 2)) ||
+        (tangents && !allocate(to.tangents, count, 4)))
         return cwi_fail_memory(err);
     if (!(grid ? copy_numbers<3>(*positions, count, to.grid_points)
                : copy_numbers<3>(*positions, count, to.positions)) ||
         !copy_faces(mesh, to.triangles) ||
         (normals && !copy_numbers<3>(*normals, count, to.normals)) ||
         (colors && !copy_colors(*colors, count, to.colors)) ||
-        (texture && !copy_numbers<2>(*texture, count, to.texture)))
+        (texture && !copy_numbers<2>(*texture, count, to.texture)) ||
+        (tangents && !copy_numbers<4>(*tangents, count, to.tangents)))
         return cwi_fail(err, CW_ERR_FORMAT, "the Draco data name points that are not there");
     return CW_OK;
 }

@@ -18,6 +18,7 @@ typedef struct cwi_arrays {
     float *normals;                  /* vertex_count x 3 */
     uint8_t *colors;                 /* vertex_count x 4, linear */
     float *texture;                  /* vertex_count x 2: texture coordinates */
+    float *tangents;                 /* vertex_count x 4, with the sign of the bitangent */
     uint32_t *triangles;             /* triangle_count x 3 */
     char comment[CWI_DRACO_COMMENT]; /* left by our own writer; empty: none */
 } cwi_arrays;
@@ -27,13 +28,14 @@ void cwi_arrays_free(cwi_arrays *arrays);
 
 /* Draco's numbers of attributes; -1: missing. */
 typedef struct cwi_draco_ids {
-    int position, normal, color, texture;
+    int position, normal, color, texture, tangent;
 } cwi_draco_ids;
 
 typedef struct cwi_draco_settings {
     cwi_quantization_grid grid; /* for positions; of 0 bits: they stay floats */
     int normal_bits;            /* of each of two octahedral coordinates */
     int texture_bits;           /* of each of two texture coordinates */
+    int tangent_bits;           /* of each of four numbers of a tangent */
     int level;                  /* 0 (fast) to 10 (small) */
     const char *comment;        /* of the file, kept as metadata; NULL: none */
 } cwi_draco_settings;

@@ -12,6 +12,9 @@
 
 static const double DEGREES = 180 / CWI_PI;
 
+/* Largest difference of a number of a tangent. */
+static const double TANGENT_ERROR = 0.01;
+
 /* Sums over triangles, independent of their order. */
 typedef struct sums {
     uint64_t a, b;
@@ -117,6 +120,17 @@ static double measure_texture(const float *texture, size_t count)
     return fmax((double)high[0] - (double)low[0], (double)high[1] - (double)low[1]);
 }
 
+/* Returns true if a decoded vertex has the tangent of an encoded one, up to its few bits, and the side of the
+ * bitangent. */
+static bool has_tangent(const cwi_decoded *d, size_t v, size_t w)
+{
+    const float *is = d->tangents + 4 * v, *was = d->tangents_encoded + 4 * w;
+    for (int k = 0; k < 3; k++)
+        if (!(fabs((double)is[k] - (double)was[k]) < TANGENT_ERROR))
+            return false;
+    return is[3] * was[3] > 0;
+}
+
 /* Looks for the texture coordinate of each decoded vertex among those of the vertices at its position. */
 static cw_status compare_texture(const cw_mesh *mesh, const cwi_decoded *d, const uint32_t *map,
                                  cw_error *err)
@@ -138,11 +152,13 @@ static cw_status compare_texture(const cw_mesh *mesh, const cwi_decoded *d, cons
             found = fabs((double)d->texture[2 * v] -
                          (double)d->texture_encoded[2 * (size_t)w]) <= step &&
                     fabs((double)d->texture[2 * v + 1] -
-                         (double)d->texture_encoded[2 * (size_t)w + 1]) <= step;
+                         (double)d->texture_encoded[2 * (size_t)w + 1]) <= step &&
+                    (!d->tangents || has_tangent(d, v, w));
         if (!found)
-            st = cwi_fail(err, CW_ERR_CHECK,
-                          "the texture coordinate of decoded vertex %zu is not the one encoded",
-                          v);
+            st = cwi_fail(
+                err, CW_ERR_CHECK,
+                "the texture coordinate or tangent of decoded vertex %zu is not the one encoded",
+                v);
     }
     cwi_free(first);
     cwi_free(next);

@@ -14,6 +14,7 @@ typedef struct cwi_decoded {
     const float *texture;         /* vertex_count x 2: texture coordinates; NULL: none */
     const float *texture_encoded; /* those of the mesh's vertices; NULL: none */
     int texture_bits;             /* that each of them kept */
+    const float *tangents, *tangents_encoded; /* the same of tangents, x 4; NULL: none */
 } cwi_decoded;
 
 /* Compares a decoded mesh with the one that was encoded. It must have the same triangles

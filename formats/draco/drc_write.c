@@ -67,8 +67,8 @@ cw_status cwi_drc_write(const cwi_parts *parts, cwi_mesh_output *out, cw_error *
         st = cwi_grid_choose(&grid, &one, desc, &facts, err);
     }
     if (st == CW_OK)
-        st = cwi_draco_pack(&whole.mesh, whole.mesh.colors, NULL, &grid, comment, desc, &packed,
-                            &facts, err);
+        st = cwi_draco_pack(&whole.mesh, whole.mesh.colors, NULL, NULL, &grid, comment, desc,
+                            &packed, &facts, err);
     if (st == CW_OK) /* compressing is nearly all of the work */
         st = cwi_progress(out->progress, "writing", 0.95, err);
     if (st == CW_OK)

@@ -20,7 +20,7 @@ typedef struct byte_source {
 
 /* --- data: URIs -------------------------------------------------------------------------- */
 
-static bool is_data(const char *uri)
+bool cwi_gltf_is_data(const char *uri)
 {
     return strncasecmp(uri, "data:", 5) == 0;
 }
@@ -53,13 +53,12 @@ static cw_status decode_base64(const char *digits, uint64_t offset, uint64_t siz
 }
 
 /* Finds the digits of a data: URI, and the number of bytes that they encode. */
-static cw_status find_digits(const char *uri, uint64_t buffer, byte_source *p, cw_error *err)
+static cw_status find_digits(const char *uri, const char *of, byte_source *p, cw_error *err)
 {
     static const char marker[] = ";base64,";
     const char *digits = strstr(uri, marker);
     if (!digits)
-        return cwi_fail(err, CW_ERR_FORMAT, "the URI of buffer %llu is not base64",
-                        (unsigned long long)buffer);
+        return cwi_fail(err, CW_ERR_FORMAT, "the URI of %s is not base64", of);
     p->digits = digits + strlen(marker);
     size_t length = strlen(p->digits);
     while (length && p->digits[length - 1] == '=')
@@ -88,7 +87,7 @@ static int hex_digit(char c)
 }
 
 /* Decodes a name, "my%20mesh.bin" to "my mesh.bin", before it is checked. */
-static cw_status decode_name(const char *uri, char name[1024], cw_error *err)
+cw_status cwi_gltf_decode_name(const char *uri, char name[1024], cw_error *err)
 {
     size_t used = 0;
     for (const char *s = uri; *s; s++) {
@@ -108,7 +107,7 @@ static cw_status decode_name(const char *uri, char name[1024], cw_error *err)
 static cw_status open_file(const cwi_input *in, const char *uri, byte_source *p, cw_error *err)
 {
     char name[1024];
-    cw_status st = decode_name(uri, name, err);
+    cw_status st = cwi_gltf_decode_name(uri, name, err);
     if (st != CW_OK)
         return st;
     st = cwi_input_open_side(in, name, &p->own_fd, &p->held, err);
@@ -127,9 +126,11 @@ static bool range_fits(uint64_t offset, uint64_t size, uint64_t held)
 static cw_status find_place(const cwi_gltf_bytes *from, const cwi_gltf_buffer *b,
                             uint64_t index, byte_source *p, cw_error *err)
 {
+    char of[40];
     *p = (byte_source){.fd = from->in->fd, .own_fd = -1};
-    if (b->uri && is_data(b->uri))
-        return find_digits(b->uri, index, p, err);
+    snprintf(of, sizeof of, "buffer %llu", (unsigned long long)index);
+    if (b->uri && cwi_gltf_is_data(b->uri))
+        return find_digits(b->uri, of, p, err);
     if (b->uri)
         return open_file(from->in, b->uri, p, err);
     if (index > 0)
@@ -165,6 +166,17 @@ static cw_status load_range(const byte_source *p, uint64_t offset, uint64_t size
     return st;
 }
 
+cw_status cwi_gltf_load_data(const char *uri, unsigned char **bytes, size_t *size,
+                             cw_error *err)
+{
+    byte_source p = {.own_fd = -1};
+    cw_status st = find_digits(uri, "a picture", &p, err);
+    if (st == CW_OK && p.held == 0)
+        st = cwi_fail(err, CW_ERR_FORMAT, "the data: URI of a picture is empty");
+    *size = (size_t)p.held;
+    return st == CW_OK ? load_range(&p, 0, p.held, bytes, err) : st;
+}
+
 cw_status cwi_gltf_load(const cwi_gltf_bytes *from, const cwi_gltf_scene *scene,
                         uint64_t buffer, uint64_t offset, uint64_t size, unsigned char **bytes,
                         cw_error *err)
@@ -194,7 +206,7 @@ cw_status cwi_gltf_load(const cwi_gltf_bytes *from, const cwi_gltf_scene *scene,
 uint64_t cwi_gltf_file_bytes(const cwi_gltf_bytes *from, const cwi_gltf_buffer *buffer)
 {
     byte_source p = {.own_fd = -1};
-    if (buffer->uri && !is_data(buffer->uri))
+    if (buffer->uri && !cwi_gltf_is_data(buffer->uri))
         open_file(from->in, buffer->uri, &p, NULL);
     close_source(&p);
     return p.held;
@@ -233,7 +245,7 @@ static bool is_unpacked(const cwi_gltf_primitive *p, int accessor)
 {
     return p && accessor >= 0 &&
            (accessor == p->indices || accessor == p->position || accessor == p->normal ||
-            accessor == p->color);
+            accessor == p->color || accessor == p->texture);
 }
 
 /* Opens the numbers of a primitive that was decoded as a whole. */
@@ -245,15 +257,20 @@ static cw_status open_unpacked(const cwi_gltf_bytes *from, const cwi_gltf_access
     const void *array = accessor == p->indices    ? (const void *)all->triangles
                         : accessor == p->position ? (const void *)all->positions
                         : accessor == p->normal   ? (const void *)all->normals
+                        : accessor == p->texture  ? (const void *)all->texture
                                                   : (const void *)all->colors;
-    const bool colors = array == all->colors, indices = array == all->triangles;
+    const bool colors = array == all->colors, indices = array == all->triangles,
+               places = array == all->texture;
     *numbers =
         (cwi_gltf_numbers){.count = indices ? 3 * all->triangle_count : all->vertex_count,
-                           .stride = indices || colors ? 4 : 12,
+                           .stride = indices || colors ? 4
+                                     : places          ? 8
+                                                       : 12,
                            .component = indices  ? 5125
                                         : colors ? 5121
                                                  : 5126,
                            .numbers = indices  ? 1
+                                      : places ? 2
                                       : colors ? 4
                                                : 3,
                            .normalized = colors};

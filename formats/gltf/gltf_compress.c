@@ -143,6 +143,9 @@ static cw_status compress_draco(cwi_gltf_plan *plan, cwi_gltf_piece *piece,
     const size_t count = piece->part->mesh.vertex_count;
     unsigned char *colors = NULL;
     cwi_draco_packed packed = {0};
+    cw_status st = cwi_gltf_add_tangents(piece, err);
+    if (st != CW_OK)
+        return st;
     cwi_gltf_plan_arrays(plan, piece);
     if (piece->part->mesh.colors && !(colors = cwi_alloc_array(count, 4)))
         return cwi_fail_memory(err);
@@ -154,8 +157,9 @@ static cw_status compress_draco(cwi_gltf_plan *plan, cwi_gltf_piece *piece,
             cwi_gltf_put(plan, piece, a, i, colors + 4 * i);
     }
     const cw_attribute *texture = piece->part->texture;
-    cw_status st = cwi_draco_pack(&piece->part->mesh, colors, texture ? texture->data : NULL,
-                                  &plan->grid, NULL, desc, &packed, facts, err);
+    st = cwi_draco_pack(&piece->part->mesh, colors, texture ? texture->data : NULL,
+                        (const float(*)[4])piece->tangents, &plan->grid, NULL, desc, &packed,
+                        facts, err);
     cwi_free(colors);
     if (st == CW_OK) {
         describe_draco(piece, &plan->grid, &packed.decoded);

@@ -68,7 +68,8 @@ static cw_status unpack_draco(const cwi_gltf_unpacker *u, const job *j, char *sh
         to = put_array(to, a.positions, 12 * a.vertex_count);
         to = put_array(to, a.triangles, 12 * a.triangle_count);
         to = put_array(to, a.normals, 12 * a.vertex_count);
-        put_array(to, a.colors, 4 * a.vertex_count);
+        to = put_array(to, a.colors, 4 * a.vertex_count);
+        put_array(to, a.texture, 8 * a.vertex_count);
     }
     cwi_arrays_free(&a);
     return st;
@@ -192,7 +193,7 @@ cw_status cwi_gltf_unpack_draco(cwi_gltf_unpacker *u, const cwi_draco_ids *ids,
     cw_status st = anew ? cwi_draco_functions_load(&u->draco, err) : CW_OK;
     if (st == CW_OK)
         st = run_job(u, &j, packed,
-                     4 * align_size(12 * points) + align_size(4 * (size_t)corners), anew, err);
+                     5 * align_size(12 * points) + align_size(4 * (size_t)corners), anew, err);
     if (st != CW_OK)
         return st;
     const char *from = (const char *)u->box.shared + align_size(size);
@@ -206,5 +207,9 @@ cw_status cwi_gltf_unpack_draco(cwi_gltf_unpacker *u, const cwi_draco_ids *ids,
         from += align_size(12 * points);
     if (good && ids->color >= 0)
         good = take_array(&from, &arrays->colors, 4 * points);
+    else
+        from += align_size(4 * points);
+    if (good && ids->texture >= 0)
+        good = take_array(&from, &arrays->texture, 8 * points);
     return good ? CW_OK : cwi_fail_memory(err);
 }

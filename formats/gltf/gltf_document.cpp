@@ -93,6 +93,8 @@ tinygltf::Value draco_extension(tinygltf::Model &model, const cwi_gltf_piece &pi
         ids["COLOR_0"] = tinygltf::Value(piece.ids.color);
     if (piece.ids.texture >= 0)
         ids["TEXCOORD_0"] = tinygltf::Value(piece.ids.texture);
+    if (piece.ids.tangent >= 0)
+        ids["TANGENT"] = tinygltf::Value(piece.ids.tangent);
     return tinygltf::Value(Object{{"bufferView", whole(model.bufferViews.size() - 1)},
                                   {"attributes", tinygltf::Value(ids)}});
 }
@@ -134,41 +136,6 @@ std::string print_color(const uint8_t *c)
     return hex;
 }
 
-// Gives a material, which no other piece has, the pictures of its piece.
-void add_pictures(tinygltf::Model &model, const cwi_gltf_piece &piece, int material)
-{
-    if (piece.normal_image)
-        model.materials[size_t(material)].normalTexture.index = int(piece.normal_image) - 1;
-}
-
-// Adds the pictures of all pieces, each as a texture.
-void add_images(tinygltf::Model &model, const cwi_gltf_document &document)
-{
-    if (document.image_count) {
-        tinygltf::Sampler sampler;
-        sampler.minFilter = TINYGLTF_TEXTURE_FILTER_LINEAR_MIPMAP_LINEAR;
-        sampler.magFilter = TINYGLTF_TEXTURE_FILTER_LINEAR;
-        sampler.wrapS = sampler.wrapT = TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE;
-        model.samplers.push_back(sampler);
-    }
-    for (size_t n = 0; n < document.image_count; n++) {
-        const cwi_gltf_image &image = document.images[n];
-        tinygltf::BufferView view;
-        view.buffer = 0;
-        view.byteOffset = size_t(image.at);
-        view.byteLength = image.file.size;
-        model.bufferViews.push_back(view);
-        tinygltf::Image picture;
-        picture.bufferView = int(model.bufferViews.size()) - 1;
-        picture.mimeType = image.file.bytes[0] == 0xff ? "image/jpeg" : "image/png";
-        model.images.push_back(picture);
-        tinygltf::Texture texture;
-        texture.source = int(n);
-        texture.sampler = 0;
-        model.textures.push_back(texture);
-    }
-}
-
 // Finds the material of a piece. One of a single colour has its own. Vertex colours are multiplied with
 // the base colour, so the base colour is white with them. Other similar pieces share a material.
 int find_material(tinygltf::Model &model, const cwi_gltf_piece &piece)
@@ -177,7 +144,7 @@ int find_material(tinygltf::Model &model, const cwi_gltf_piece &piece)
         return add_color(model, piece.part->name, piece.part->color);
     const double grey = piece.part->mesh.colors ? 1.0 : 0.8;
     const std::string mode = piece.translucent ? "BLEND" : "OPAQUE";
-    if (piece.normal_image)
+    if (piece.has_pictures)
         return add_material(model, piece.part->name, {grey, grey, grey, 1.0}, mode);
     for (size_t i = 0; i < model.materials.size(); i++)
         if (model.materials[i].alphaMode == mode && model.materials[i].name == "surface" &&
@@ -328,8 +295,9 @@ tinygltf::Primitive make_primitive(tinygltf::Model &model, const cwi_gltf_piece 
 }
 
 // Adds a primitive for each colour. All have the same vertices, and their indices are one view.
-void add_groups(tinygltf::Model &model, const cwi_gltf_piece &piece,
-                const tinygltf::Primitive &whole, tinygltf::Mesh &mesh)
+void add_groups(tinygltf::Model &model, const cwi_gltf_document &document,
+                const cwi_gltf_piece &piece, const tinygltf::Primitive &whole,
+                tinygltf::Mesh &mesh)
 {
     const size_t stride = size_t(piece.arrays[0].stride);
     for (size_t n = 0; n < piece.groups.count; n++) {
@@ -345,23 +313,25 @@ void add_groups(tinygltf::Model &model, const cwi_gltf_piece &piece,
             primitive.indices = int(model.accessors.size()) - 1;
         }
         primitive.material = add_color(model, print_color(group.color), group.color);
-        add_pictures(model, piece, primitive.material);
+        cwi_gltf_add_pictures(model, document, piece, primitive.material);
         mesh.primitives.push_back(primitive);
     }
 }
 
-// Adds one of `left` pieces; the others follow it.
-void add_piece(tinygltf::Model &model, const cwi_gltf_piece &piece, size_t left,
-               const double *local_origin)
+// Adds a piece of the document. Those before it are there.
+void add_piece(tinygltf::Model &model, const cwi_gltf_document &document, size_t index_of)
 {
+    const cwi_gltf_piece &piece = document.pieces[index_of];
+    const size_t left = document.count - index_of;
+    const double *local_origin = document.local_origin;
     tinygltf::Mesh mesh;
     tinygltf::Primitive primitive = make_primitive(model, piece);
     mesh.name = piece.part->name;
     if (piece.groups.count) {
-        add_groups(model, piece, primitive, mesh);
+        add_groups(model, document, piece, primitive, mesh);
     } else {
         primitive.material = find_material(model, piece);
-        add_pictures(model, piece, primitive.material);
+        cwi_gltf_add_pictures(model, document, piece, primitive.material);
         mesh.primitives.push_back(primitive);
     }
     model.meshes.push_back(mesh);
@@ -500,10 +470,10 @@ tinygltf::Model make_model(const cwi_gltf_document &document)
     model.scenes.resize(1);
     model.defaultScene = 0;
     for (size_t p = 0; p < document.count; p++)
-        add_piece(model, document.pieces[p], document.count - p, document.local_origin);
+        add_piece(model, document, p);
     if (document.end_s > 0)
         add_animation(model, document);
-    add_images(model, document);
+    cwi_gltf_add_images(model, document);
     if (has_levels(document))
         model.extensionsUsed.push_back(GLTF_LOD); // optional for readers
     if (document.quantized)

@@ -32,6 +32,16 @@ typedef struct cwi_gltf_array {
     uint64_t packed_at, packed; /* meshopt: place and number of its compressed bytes */
 } cwi_gltf_array;
 
+/* The pictures of a material. */
+enum {
+    CWI_GLTF_NORMAL_PICTURE,
+    CWI_GLTF_COLOR_PICTURE,
+    CWI_GLTF_METALLIC_PICTURE,
+    CWI_GLTF_OCCLUSION_PICTURE,
+    CWI_GLTF_EMISSIVE_PICTURE,
+    CWI_GLTF_PICTURES
+};
+
 /* A picture in the buffer. */
 typedef struct cwi_gltf_image {
     cw_texture file;
@@ -41,9 +51,10 @@ typedef struct cwi_gltf_image {
 /* A node with a mesh of one primitive, or of one for each colour. */
 typedef struct cwi_gltf_piece {
     const cwi_part *part;
-    size_t normal_image;     /* of the document's images, from 1 on; 0: none */
-    float (*tangents)[4];    /* vertices; NULL: none are written */
-    cwi_color_groups groups; /* a primitive each; none: there is one primitive */
+    bool has_pictures;
+    size_t images[CWI_GLTF_PICTURES]; /* of the document's images, from 1 on; 0: none */
+    float (*tangents)[4];             /* vertices; NULL: none are written */
+    cwi_color_groups groups;          /* a primitive each; none: there is one primitive */
     cwi_gltf_array arrays[CWI_GLTF_USES];
     size_t array_count;
     double low[3], high[3]; /* box of POSITION, as it is stored */

@@ -196,23 +196,38 @@ cw_status cwi_gltf_count_split(const cwi_parts *parts, const cw_write_desc *desc
 
 /* --- pictures ------------------------------------------------------------------------------ */
 
+/* Finds a picture among those of the document, or adds it. Returns its number, from 1 on; 0: there is none. */
+static size_t find_image(cwi_gltf_document *d, const cw_texture *picture)
+{
+    size_t n = 0;
+    if (!picture->bytes)
+        return 0;
+    while (n < d->image_count && d->images[n].file.bytes != picture->bytes)
+        n++;
+    if (n == d->image_count)
+        d->images[d->image_count++].file = *picture;
+    return n + 1;
+}
+
 /* Lists the pictures of materials, each once. */
 static cw_status list_images(cwi_gltf_plan *plan, cw_error *err)
 {
     cwi_gltf_document *d = &plan->document;
-    d->images = cwi_alloc_zeroed(plan->parts.count, sizeof *d->images);
+    d->images = cwi_alloc_zeroed(CWI_GLTF_PICTURES * plan->parts.count, sizeof *d->images);
     if (!d->images)
         return cwi_fail_memory(err);
     for (size_t p = 0; p < plan->parts.count; p++) {
-        const cw_textures *textures = plan->parts.items[p].textures;
-        if (!textures || !textures->normal.bytes)
+        const cw_textures *set = plan->parts.items[p].textures;
+        cwi_gltf_piece *piece = &plan->pieces[p];
+        if (!set)
             continue;
-        size_t n = 0;
-        while (n < d->image_count && d->images[n].file.bytes != textures->normal.bytes)
-            n++;
-        if (n == d->image_count)
-            d->images[d->image_count++].file = textures->normal;
-        plan->pieces[p].normal_image = n + 1;
+        const cw_texture *const pictures[CWI_GLTF_PICTURES] = {&set->normal, &set->color,
+                                                               &set->metallic_roughness,
+                                                               &set->occlusion, &set->emissive};
+        for (int n = 0; n < CWI_GLTF_PICTURES; n++) {
+            piece->images[n] = find_image(d, pictures[n]);
+            piece->has_pictures = piece->has_pictures || piece->images[n];
+        }
     }
     return CW_OK;
 }

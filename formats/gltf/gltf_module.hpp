@@ -50,6 +50,13 @@ inline int find_attribute(const std::map<std::string, int> &attributes, const ch
     return found == attributes.end() ? -1 : found->second;
 }
 
+// Gives a material, which no other piece has, the pictures of its piece.
+void cwi_gltf_add_pictures(tinygltf::Model &model, const cwi_gltf_document &document,
+                           const cwi_gltf_piece &piece, int material);
+
+// Adds the pictures of all pieces, when all materials are there.
+void cwi_gltf_add_images(tinygltf::Model &model, const cwi_gltf_document &document);
+
 // Makes the JSON of a document; stored as cwi_gltf_functions.document.
 CW_NODISCARD cw_status cwi_gltf_document_make(const cwi_gltf_document *document, char **json,
                                               size_t *size, cw_error *err);

@@ -117,10 +117,20 @@ static cw_status add_corners(cwi_gltf_reader *r, const cwi_gltf_primitive *p, si
 static bool same_vertices(const cwi_gltf_primitive *p, const cwi_gltf_primitive *q)
 {
     return p->position == q->position && p->normal == q->normal && p->color == q->color &&
-           (p->color < 0 || p->material == q->material) && p->end_target == p->first_target &&
-           q->end_target == q->first_target &&
+           p->texture == q->texture && (p->color < 0 || p->material == q->material) &&
+           p->end_target == p->first_target && q->end_target == q->first_target &&
            memcmp(p->joints, q->joints, sizeof p->joints) == 0 &&
            memcmp(p->weights, q->weights, sizeof p->weights) == 0;
+}
+
+/* Returns true if the materials of two primitives place texture coordinates alike. */
+static bool same_look(const cwi_gltf_reader *r, const cwi_gltf_primitive *p,
+                      const cwi_gltf_primitive *q)
+{
+    const cwi_gltf_look *a = cwi_gltf_look_of(r, p), *b = cwi_gltf_look_of(r, q);
+    const bool a_moves = a && a->moves, b_moves = b && b->moves;
+    return a_moves == b_moves &&
+           (!a_moves || memcmp(a->transform, b->transform, sizeof a->transform) == 0);
 }
 
 static uint64_t count_of(const cwi_gltf_scene *scene, int accessor)
@@ -135,7 +145,8 @@ static cw_status unpack_primitive(cwi_gltf_reader *r, const cwi_gltf_primitive *
                                   cw_error *err)
 {
     const cwi_gltf_scene *scene = &r->scene;
-    const cwi_draco_ids ids = {p->draco_position, p->draco_normal, p->draco_color, -1};
+    const cwi_draco_ids ids = {p->draco_position, p->draco_normal, p->draco_color,
+                               p->draco_texture, -1};
     const uint64_t points = count_of(scene, p->position), indices = count_of(scene, p->indices);
     unsigned char *packed = NULL;
     r->bytes.unpacked = NULL;
@@ -164,8 +175,6 @@ static cw_status color_triangles(cwi_gltf_reader *r, const cwi_gltf_primitive *p
     const cwi_gltf_material *m = cwi_gltf_material_of(r, p);
     uint8_t color[4];
     r->has_colors = r->has_colors || p->color >= 0 || (m && !m->is_plain);
-    r->has_texture = r->has_texture || (m && m->has_texture);
-    r->has_texcoords = r->has_texcoords || p->has_texcoords;
     if (!r->any_base)
         return CW_OK;
     cwi_gltf_base_color(m, color);
@@ -175,7 +184,7 @@ static cw_status color_triangles(cwi_gltf_reader *r, const cwi_gltf_primitive *p
 static void close_shape(cwi_gltf_shape *shape)
 {
     cwi_gltf_numbers *const all[] = {&shape->position, &shape->normal, &shape->color,
-                                     &shape->indices};
+                                     &shape->place, &shape->indices};
     for (size_t n = 0; n < sizeof all / sizeof *all; n++)
         cwi_free(all[n]->bytes);
     for (size_t n = 0; n < CWI_GLTF_SETS; n++) {
@@ -216,8 +225,13 @@ static cw_status add_primitive(cwi_gltf_reader *r, const cwi_gltf_instance *at,
                                const cwi_gltf_primitive *p, last_vertices *last,
                                cwi_gltf_shape *shape, cw_mesh_file *metadata, cw_error *err)
 {
+    const cwi_gltf_look *look = cwi_gltf_look_of(r, p);
     cw_status st = shape->is_loaded ? CW_OK : unpack_primitive(r, p, err);
-    if (st == CW_OK && (!last->of || p->draco >= 0 || !same_vertices(last->of, p))) {
+    if (st == CW_OK && r->in->pictures.set_count)
+        st = cwi_mesh_begin_textures(r->in, look ? look->textures : 0, r->build.triangle_count,
+                                     err);
+    if (st == CW_OK && (!last->of || p->draco >= 0 || !same_vertices(last->of, p) ||
+                        !same_look(r, last->of, p))) {
         last->first = r->build.point_count;
         st = cwi_gltf_add_vertices(r, at, p, shape, metadata, err);
     }

@@ -4,6 +4,8 @@
 #include "core/base/module.h"
 #include "core/base/status.h"
 #include "core/base/text.h"
+#include "core/texture/join_seams.h"
+#include "core/texture/split_seams.h"
 #include "formats/bytes/little_endian.h"
 #include "formats/gltf/gltf_formats.h"
 #include "formats/gltf/gltf_reader.h"
@@ -122,6 +124,7 @@ static cw_status parse_json(cwi_gltf_reader *r, uint64_t at, uint64_t size,
     const bool looks_right = st == CW_OK && cwi_gltf_check_look(json, got, &fault) == CW_OK;
     if (st == CW_OK && !looks_right)
         snprintf(metadata->fault, sizeof metadata->fault, "%.159s", fault.message);
+    struct json_t *materials = looks_right ? cwi_gltf_keep_materials(json, got) : NULL;
     if (st == CW_OK)
         st = cwi_gltf_blind(json, got, looks_right, err);
     if (st == CW_OK)
@@ -129,6 +132,9 @@ static cw_status parse_json(cwi_gltf_reader *r, uint64_t at, uint64_t size,
     if (st == CW_OK)
         st = check_views(&r->scene, err);
     cwi_free(json);
+    if (st == CW_OK)
+        st = cwi_gltf_read_materials(r, materials, err);
+    cwi_gltf_free_materials(materials);
     return st;
 }
 
@@ -219,9 +225,14 @@ static cw_status begin_part(cwi_gltf_reader *r, const cwi_gltf_instance *at, cw_
 static void name_not_applied(unsigned features, cw_mesh_file *metadata)
 {
     static const char *const names[] = {"skins of meshes that Draco compressed",
-                                        "skins of instanced nodes", "colours of morph targets"};
+                                        "skins of instanced nodes",
+                                        "colours of morph targets",
+                                        "pictures by TEXCOORD_1",
+                                        "differing KHR_texture_transform of one material",
+                                        "mirrored textures"};
     size_t used = 0;
-    for (size_t n = 0; n < 3 && used < sizeof metadata->not_applied; n++)
+    for (size_t n = 0; n < sizeof names / sizeof *names && used < sizeof metadata->not_applied;
+         n++)
         if (features >> n & 1)
             used += (size_t)snprintf(metadata->not_applied + used,
                                      sizeof metadata->not_applied - used, "%s%s",
@@ -244,6 +255,29 @@ static cw_status draw_instances(cwi_gltf_reader *r, cw_mesh_file *metadata, cw_e
     return st;
 }
 
+/* Gives the mesh its texture coordinates. Vertices that were split at seams become one within their part. */
+static cw_status keep_places(const cwi_gltf_reader *r, cw_mesh *mesh, cw_error *err)
+{
+    const cwi_marks *marks = &r->in->marks;
+    float(*uv)[2];
+    cw_status st = cwi_texture_add(mesh, CW_ON_VERTICES, &uv, err);
+    uint32_t *groups = cwi_alloc_zeroed(mesh->vertex_count, sizeof *groups);
+    if (st == CW_OK && !groups)
+        st = cwi_fail_memory(err);
+    if (st == CW_OK)
+        memcpy(uv, r->places, mesh->vertex_count * sizeof *uv);
+    for (size_t n = 0; n < marks->count && st == CW_OK; n++) {
+        const size_t end =
+            n + 1 < marks->count ? marks->items[n + 1].triangle : mesh->triangle_count;
+        for (size_t c = 3 * marks->items[n].triangle; c < 3 * end; c++)
+            groups[mesh->triangles[c]] = marks->items[n].object;
+    }
+    if (st == CW_OK)
+        st = cwi_join_seams(mesh, groups, err);
+    cwi_free(groups);
+    return st;
+}
+
 static cw_status build_scene(cwi_gltf_reader *r, cw_mesh *mesh, cw_mesh_file *metadata,
                              cw_error *err)
 {
@@ -259,8 +293,6 @@ static cw_status build_scene(cwi_gltf_reader *r, cw_mesh *mesh, cw_mesh_file *me
         return st;
     describe_mesh(r, mesh, metadata);
     name_not_applied(r->not_applied, metadata);
-    cwi_say_left_out(metadata, r->has_texture, "textures");
-    cwi_say_left_out(metadata, r->has_texcoords, "texture coordinates");
     mesh->colors = r->colors;
     r->colors = NULL;
     if (!r->no_normals) {
@@ -268,6 +300,8 @@ static cw_status build_scene(cwi_gltf_reader *r, cw_mesh *mesh, cw_mesh_file *me
         r->normals = NULL;
     }
     st = cwi_build_finish(&r->build, mesh, metadata, err);
+    if (st == CW_OK && r->places)
+        st = keep_places(r, mesh, err);
     return st == CW_OK && r->has_colors && !mesh->colors
                ? cwi_color_mesh(&r->materials, true, mesh, err)
                : st;
@@ -300,6 +334,8 @@ static cw_status read_scene(cwi_mesh_input *in, bool binary, cw_mesh *mesh,
     cwi_free(r.instances);
     cwi_free(r.normals);
     cwi_free(r.colors);
+    cwi_free(r.places);
+    cwi_free(r.looks);
     cwi_face_colors_free(&r.materials);
     cwi_gltf_scene_free(&r.scene);
     return st;

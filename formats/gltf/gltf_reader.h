@@ -31,7 +31,7 @@ typedef struct cwi_gltf_drawing {
 
 /* The opened arrays of a primitive. */
 typedef struct cwi_gltf_shape {
-    cwi_gltf_numbers position, normal, color, indices;
+    cwi_gltf_numbers position, normal, color, place, indices;
     double *morphed[2]; /* positions and normals of morphed vertices, 3 each; NULL: unchanged */
     cwi_gltf_numbers joints[CWI_GLTF_SETS], weights[CWI_GLTF_SETS];
     size_t sets;    /* sets of joints that place the vertices */
@@ -40,10 +40,20 @@ typedef struct cwi_gltf_shape {
 
 /* Features of a scene that viewers apply, and this reader does not. */
 enum {
-    CWI_GLTF_PACKED_SKINS = 1,    /* those of meshes that Draco compressed */
-    CWI_GLTF_INSTANCED_SKINS = 2, /* those of nodes with instances */
-    CWI_GLTF_MORPHED_COLORS = 4   /* colours of morph targets */
+    CWI_GLTF_PACKED_SKINS = 1,      /* those of meshes that Draco compressed */
+    CWI_GLTF_INSTANCED_SKINS = 2,   /* those of nodes with instances */
+    CWI_GLTF_MORPHED_COLORS = 4,    /* colours of morph targets */
+    CWI_GLTF_OTHER_SETS = 8,        /* pictures by further sets of texture coordinates */
+    CWI_GLTF_OTHER_TRANSFORMS = 16, /* those that differ among a material's pictures */
+    CWI_GLTF_OTHER_WRAPS = 32       /* a texture that is mirrored, or repeated along one side */
 };
+
+/* The pictures of a material, and how they lie on the surface. */
+typedef struct cwi_gltf_look {
+    double transform[2][3]; /* of texture coordinates, ... */
+    bool moves;             /* ... unless it changes nothing */
+    uint32_t textures;      /* of the file's sets of pictures; 0: none */
+} cwi_gltf_look;
 
 typedef struct cwi_gltf_reader {
     cwi_mesh_input *in;
@@ -70,8 +80,10 @@ typedef struct cwi_gltf_reader {
     uint8_t *colors;           /* of vertices, where a primitive has COLOR_0 */
     cwi_face_colors materials; /* colours of triangles by their materials */
     bool any_base;             /* some material has a base colour that counts */
-    bool has_colors, has_texture, has_texcoords; /* of what was drawn */
-    size_t normal_capacity, color_capacity;
+    bool has_colors;           /* of what was drawn */
+    cwi_gltf_look *looks;      /* of materials; NULL: none has pictures */
+    float *places;             /* of vertices x 2, where a primitive has TEXCOORD_0 */
+    size_t normal_capacity, color_capacity, place_capacity;
     bool no_normals; /* some primitive has none: then none are kept */
 } cwi_gltf_reader;
 
@@ -144,6 +156,18 @@ CW_NODISCARD cw_status cwi_gltf_add_instance(cwi_gltf_reader *r, const cwi_gltf_
 
 /* Closes the arrays that stay open for the next instance. */
 void cwi_gltf_free_shapes(cwi_gltf_reader *r);
+
+/* Parses the JSON of a file with textures, before cwi_gltf_blind(). Returns NULL for one without. Free
+ * it with cwi_gltf_free_materials(). */
+struct json_t *cwi_gltf_keep_materials(const char *json, size_t size);
+void cwi_gltf_free_materials(struct json_t *root);
+
+/* Reads the pictures of materials, when the scene is there. Pictures whose files are missing are left out. */
+CW_NODISCARD cw_status cwi_gltf_read_materials(cwi_gltf_reader *r, struct json_t *root,
+                                               cw_error *err);
+
+/* Returns how the pictures of a primitive lie; NULL: it has none. */
+const cwi_gltf_look *cwi_gltf_look_of(const cwi_gltf_reader *r, const cwi_gltf_primitive *p);
 
 /* Returns the material of a primitive, or NULL. */
 const cwi_gltf_material *cwi_gltf_material_of(const cwi_gltf_reader *r,

@@ -236,7 +236,6 @@ static bool mend_scene(cwi_gltf_scene *s)
     }
     for (size_t i = 0; i < s->primitive_count; i++) {
         cwi_gltf_primitive *p = &s->primitives[i];
-        mend_bool(&p->has_texcoords);
         if (!is_range(p->first_target, p->end_target, s->target_count))
             return false;
     }
@@ -245,10 +244,8 @@ static bool mend_scene(cwi_gltf_scene *s)
     for (size_t i = 0; i < s->skin_count; i++)
         if (!is_range(s->skins[i].first, s->skins[i].end, s->joint_count))
             return false;
-    for (size_t i = 0; i < s->material_count; i++) {
+    for (size_t i = 0; i < s->material_count; i++)
         mend_bool(&s->materials[i].is_plain);
-        mend_bool(&s->materials[i].has_texture);
-    }
     for (size_t i = 0; i < s->mesh_count; i++) {
         const cwi_gltf_mesh *m = &s->meshes[i];
         if (!is_range(m->first, m->end, s->primitive_count) ||

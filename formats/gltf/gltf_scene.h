@@ -58,19 +58,18 @@ enum { CWI_GLTF_SETS = 2 };
 
 typedef struct cwi_gltf_primitive {
     int mode; /* 0 to 6 */
-    int indices, position, normal, color;
+    int indices, position, normal, color, texture;
     int draco; /* the view of KHR_draco_mesh_compression; -1: not compressed */
-    int draco_position, draco_normal, draco_color; /* Draco's numbers of attributes; or -1 */
+    int draco_position, draco_normal, draco_color,
+        draco_texture; /* Draco's numbers of attributes; or -1 */
     int material;
     int joints[CWI_GLTF_SETS], weights[CWI_GLTF_SETS];
     size_t first_target, end_target;
-    bool has_texcoords;
 } cwi_gltf_primitive;
 
 typedef struct cwi_gltf_material {
-    double base[4];   /* linear light and opacity */
-    bool is_plain;    /* the base colour says nothing: white, or 0.8 of it */
-    bool has_texture; /* of the base colour */
+    double base[4]; /* linear light and opacity */
+    bool is_plain;  /* the base colour says nothing: white, or 0.8 of it */
 } cwi_gltf_material;
 
 typedef struct cwi_gltf_mesh {
@@ -189,6 +188,12 @@ typedef struct cwi_gltf_bytes {
 CW_NODISCARD cw_status cwi_gltf_load(const cwi_gltf_bytes *from, const cwi_gltf_scene *scene,
                                      uint64_t buffer, uint64_t offset, uint64_t size,
                                      unsigned char **bytes, cw_error *err);
+
+/* Returns true for a data: URI; decodes one, to be freed with cwi_free(); decodes the name of a file. */
+bool cwi_gltf_is_data(const char *uri);
+CW_NODISCARD cw_status cwi_gltf_load_data(const char *uri, unsigned char **bytes, size_t *size,
+                                          cw_error *err);
+CW_NODISCARD cw_status cwi_gltf_decode_name(const char *uri, char name[1024], cw_error *err);
 
 /* Returns the size of a buffer's separate file; 0 when there is none. */
 uint64_t cwi_gltf_file_bytes(const cwi_gltf_bytes *from, const cwi_gltf_buffer *buffer);

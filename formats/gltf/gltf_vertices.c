@@ -236,6 +236,43 @@ static cw_status add_colors(cwi_gltf_reader *r, const cwi_gltf_primitive *p, siz
     return st;
 }
 
+const cwi_gltf_look *cwi_gltf_look_of(const cwi_gltf_reader *r, const cwi_gltf_primitive *p)
+{
+    return r->looks && cwi_gltf_material_of(r, p) ? &r->looks[p->material] : NULL;
+}
+
+/* Adds the texture coordinates of vertices, moved as the material says; 0 where there are none. */
+static cw_status add_places(cwi_gltf_reader *r, const cwi_gltf_primitive *p, size_t first,
+                            cwi_gltf_shape *shape, cw_error *err)
+{
+    const size_t count = r->build.point_count;
+    const cwi_gltf_look *look = cwi_gltf_look_of(r, p);
+    cwi_gltf_numbers *numbers = &shape->place;
+    const bool is_first = !r->places;
+    cw_status st = CW_OK;
+    if (p->texture < 0 && is_first)
+        return CW_OK;
+    if (p->texture >= 0 && !numbers->bytes)
+        st = cwi_gltf_open_attribute(r, p->texture, "TEXCOORD_0", count - first, 2, 2, numbers,
+                                     err);
+    if (st == CW_OK)
+        st = cwi_mesh_grow(r->in, &r->places, &r->place_capacity, count, 2 * sizeof *r->places,
+                           err);
+    if (st == CW_OK)
+        memset(r->places + (is_first ? 0 : 2 * first), 0,
+               2 * (is_first ? count : count - first) * sizeof *r->places);
+    for (size_t i = 0; st == CW_OK && i < numbers->count; i++) {
+        const double u = cwi_gltf_number(numbers, i, 0), v = cwi_gltf_number(numbers, i, 1);
+        for (size_t k = 0; k < 2; k++) {
+            const double *m = look ? look->transform[k] : NULL;
+            const double place = look && look->moves ? m[0] * u + m[1] * v + m[2] : k ? v : u;
+            r->places[2 * (first + i) + k] = isfinite(place) ? (float)place : 0;
+        }
+    }
+    close_numbers(r, numbers);
+    return st;
+}
+
 /* Compares the stated bounds of an accessor with its numbers, where they are as they were written.
  * Bounds may have gone through single precision, or be written with as many digits. */
 static void check_bounds(const cwi_gltf_reader *r, const cwi_gltf_primitive *p,
@@ -298,5 +335,7 @@ cw_status cwi_gltf_add_vertices(cwi_gltf_reader *r, const cwi_gltf_instance *at,
     close_numbers(r, &shape->position);
     if (st == CW_OK)
         st = add_normals(r, at, p, first, shape, metadata, err);
+    if (st == CW_OK)
+        st = add_places(r, p, first, shape, err);
     return st == CW_OK ? add_colors(r, p, first, shape, metadata, err) : st;
 }

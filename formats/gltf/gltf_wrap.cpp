@@ -140,7 +140,7 @@ void copy_primitive(const tinygltf::Primitive &from, cwi_gltf_primitive &to)
     to.normal = find_attribute(from.attributes, "NORMAL");
     to.color = find_attribute(from.attributes, "COLOR_0");
     to.material = from.material;
-    to.has_texcoords = from.attributes.count("TEXCOORD_0") > 0;
+    to.texture = find_attribute(from.attributes, "TEXCOORD_0");
     to.draco = -1;
     const auto found = from.extensions.find(GLTF_DRACO);
     if (found == from.extensions.end())
@@ -150,6 +150,7 @@ void copy_primitive(const tinygltf::Primitive &from, cwi_gltf_primitive &to)
     to.draco_position = id_of(member(ids, "POSITION"));
     to.draco_normal = id_of(member(ids, "NORMAL"));
     to.draco_color = id_of(member(ids, "COLOR_0"));
+    to.draco_texture = id_of(member(ids, "TEXCOORD_0"));
 }
 
 cw_status copy_meshes(const tinygltf::Model &model, cwi_gltf_scene &scene, cw_error *err)
@@ -186,7 +187,6 @@ cw_status copy_materials(const tinygltf::Model &model, cwi_gltf_scene &scene, cw
         const std::vector<double> color = base.size() == 4 ? base : white;
         std::copy(color.begin(), color.end(), scene.materials[i].base);
         scene.materials[i].is_plain = color == white || color == grey;
-        scene.materials[i].has_texture = from.pbrMetallicRoughness.baseColorTexture.index >= 0;
     }
     return st;
 }
@@ -403,6 +403,12 @@ bool fits_color(const tinygltf::Accessor &a, bool)
            (is_float(a) || is_fraction);
 }
 
+bool fits_texture(const tinygltf::Accessor &a, bool quantized)
+{
+    return a.type == TINYGLTF_TYPE_VEC2 &&
+           (is_float(a) || (is_small(a) && (quantized || (is_unsigned(a) && a.normalized))));
+}
+
 bool fits_indices(const tinygltf::Accessor &a, bool)
 {
     return a.type == TINYGLTF_TYPE_SCALAR && is_unsigned(a);
@@ -417,6 +423,10 @@ const Usage usages[] = {
      fits_normal},
     {"attributes.COLOR_0",
      "VEC3 or VEC4 of floats, or of 8 or 16 bits, unsigned and normalized", fits_color},
+    {"attributes.TEXCOORD_0",
+     "VEC2 of floats, or of 8 or 16 bits, unsigned and normalized; with KHR_mesh_quantization "
+     "required of any 8 or 16 bits",
+     fits_texture},
     {"indices", "SCALAR of 8, 16 or 32 bits, unsigned", fits_indices}};
 
 cw_status check_usage(const tinygltf::Model &model, const std::string &path, int accessor,
@@ -438,13 +448,13 @@ cw_status check_usages(const tinygltf::Model &model, const cwi_gltf_scene &scene
     for (size_t m = 0; m < scene.mesh_count; m++)
         for (size_t i = scene.meshes[m].first; i < scene.meshes[m].end; i++) {
             const cwi_gltf_primitive &p = scene.primitives[i];
-            const int accessors[] = {p.position, p.normal, p.color, p.indices};
+            const int accessors[] = {p.position, p.normal, p.color, p.texture, p.indices};
             const std::string path = "meshes[" + std::to_string(m) + "].primitives[" +
                                      std::to_string(i - scene.meshes[m].first) + "]";
             if (p.mode >= TINYGLTF_MODE_TRIANGLES && p.position < 0)
                 return cwi_fail(err, CW_ERR_FORMAT, "%s.attributes: there is no POSITION",
                                 path.c_str());
-            for (size_t n = 0; n < 4 && p.mode >= TINYGLTF_MODE_TRIANGLES; n++) {
+            for (size_t n = 0; n < 5 && p.mode >= TINYGLTF_MODE_TRIANGLES; n++) {
                 const cw_status st =
                     check_usage(model, path, accessors[n], usages[n], quantized, err);
                 if (st != CW_OK)

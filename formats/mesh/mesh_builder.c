@@ -59,15 +59,41 @@ cw_status cwi_mesh_grow(cwi_mesh_input *in, void *array, size_t *capacity, size_
     return CW_OK;
 }
 
+cw_status cwi_mesh_begin_textures(cwi_mesh_input *in, uint32_t textures, size_t triangle,
+                                  cw_error *err)
+{
+    cwi_marks *m = &in->marks;
+    cw_status st = m->count ? CW_OK : cwi_mesh_begin_part(in, "", triangle, err);
+    cwi_mark *last = st == CW_OK ? &m->items[m->count - 1] : NULL;
+    if (!last || last->textures == textures)
+        return st;
+    if (last->triangle == triangle) {
+        last->textures = textures;
+        return CW_OK;
+    }
+    st = cwi_mesh_grow(in, &m->items, &m->capacity, m->count + 1, sizeof *m->items, err);
+    if (st != CW_OK)
+        return st;
+    cwi_mark mark = m->items[m->count - 1];
+    mark.triangle = triangle;
+    mark.textures = textures;
+    m->items[m->count++] = mark;
+    return CW_OK;
+}
+
 cw_status cwi_mesh_begin_part(cwi_mesh_input *in, const char *name, size_t triangle,
                               cw_error *err)
 {
     cwi_marks *m = &in->marks;
-    const bool empty = m->count && m->items[m->count - 1].triangle == triangle;
-    const bool untitled = m->count == 0 && triangle > 0; /* triangles without a part */
+    const uint32_t object = m->count ? m->items[m->count - 1].object + 1 : 0;
+    const uint32_t textures = m->count ? m->items[m->count - 1].textures : 0;
     const size_t length = strlen(name);
-    if (empty)
-        m->name_bytes = m->items[--m->count].name;
+    while (m->count && m->items[m->count - 1].triangle == triangle) {
+        m->count--;
+        if (m->count == 0 || m->items[m->count - 1].name != m->items[m->count].name)
+            m->name_bytes = m->items[m->count].name;
+    }
+    const bool untitled = m->count == 0 && triangle > 0; /* triangles without a part */
     cw_status st =
         cwi_mesh_grow(in, &m->items, &m->capacity, m->count + 2, sizeof *m->items, err);
     if (st == CW_OK)
@@ -79,7 +105,10 @@ cw_status cwi_mesh_begin_part(cwi_mesh_input *in, const char *name, size_t trian
         m->items[m->count++] = (cwi_mark){.name = m->name_bytes};
         m->names[m->name_bytes++] = '\0';
     }
-    m->items[m->count++] = (cwi_mark){.triangle = triangle, .name = m->name_bytes};
+    m->items[m->count++] = (cwi_mark){.triangle = triangle,
+                                      .name = m->name_bytes,
+                                      .object = object + untitled,
+                                      .textures = textures};
     memcpy(m->names + m->name_bytes, name, length + 1);
     m->name_bytes += length + 1;
     return CW_OK;

@@ -17,6 +17,8 @@ typedef struct cwi_mark {
     size_t name;     /* start of its name among the names */
     bool labelled;   /* it is the surface of a label: that of this layer and value */
     uint32_t layer, value;
+    uint32_t object;   /* marks of one object have one number */
+    uint32_t textures; /* those of in->pictures, from 1 on; 0: none */
 } cwi_mark;
 
 typedef struct cwi_marks {
@@ -25,6 +27,21 @@ typedef struct cwi_marks {
     size_t count, capacity, name_bytes, name_capacity;
 } cwi_marks;
 
+/* A picture that was read. */
+typedef struct cwi_picture {
+    char *name; /* of its file or place, by which it is known */
+    cw_texture file;
+} cwi_picture;
+
+/* The pictures of a file, and the sets of them that materials have. */
+typedef struct cwi_pictures {
+    bool is_wanted; /* else none are read */
+    cwi_picture *items;
+    cw_textures *sets;
+    size_t count, capacity, set_count, set_capacity;
+    bool is_missing; /* a picture's file is missing, unreadable, or outside of the folder */
+} cwi_pictures;
+
 /* An open file, and the limits of its mesh. */
 typedef struct cwi_mesh_input {
     cwi_input file;
@@ -32,6 +49,7 @@ typedef struct cwi_mesh_input {
     uint64_t bytes;         /* bytes of arrays so far */
     cwi_marks marks;
     cw_label_table labels; /* those of marks */
+    cwi_pictures pictures; /* those of marks */
 } cwi_mesh_input;
 
 /* Fills a zeroed mesh and the facts that the file states (parts is 1 beforehand). Coordinates
@@ -54,6 +72,11 @@ CW_NODISCARD cw_status cwi_mesh_grow(cwi_mesh_input *in, void *array, size_t *ca
  * Returns as cwi_mesh_grow() */
 CW_NODISCARD cw_status cwi_mesh_begin_part(cwi_mesh_input *in, const char *name,
                                            size_t triangle, cw_error *err);
+
+/* Goes on with the object of the last part, from a triangle on with these textures; 0: none.
+ * Returns as cwi_mesh_grow() */
+CW_NODISCARD cw_status cwi_mesh_begin_textures(cwi_mesh_input *in, uint32_t textures,
+                                               size_t triangle, cw_error *err);
 
 /* States the label of the part that was begun last: a copy.
  * Returns CW_ERR_NO_MEMORY */

@@ -64,8 +64,10 @@ typedef cw_status cwi_drain(void *to, const void *bytes, size_t size, cw_error *
 
 typedef struct cwi_mesh_output {
     cwi_outfile *file;
-    cwi_outfolder *folder; /* in place of the file, for formats of many files */
-    cwi_outfile *side;     /* a second file that a writer opens beside the path; NULL: none */
+    cwi_outfolder *folder;  /* in place of the file, for formats of many files */
+    cwi_outfile *side;      /* a second file that a writer opens beside the path; NULL: none */
+    cwi_outfile **pictures; /* more of them: picture_count, from cwi_realloc_array() */
+    size_t picture_count;
     const char *path;
     cwi_drain *drain; /* receiver of records; NULL: the file itself */
     void *drain_to;

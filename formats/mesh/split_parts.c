@@ -6,6 +6,8 @@
 #include "core/geometry/union_find.h"
 #include "core/mesh/mesh.h"
 #include "core/mesh/mesh_attributes.h"
+#include "core/texture/separate_textures.h"
+#include "formats/mesh/picture_store.h"
 #include "formats/mesh/place_parts.h"
 
 static const uint32_t NONE = UINT32_MAX;
@@ -14,6 +16,7 @@ static const uint32_t NONE = UINT32_MAX;
 typedef struct held {
     cw_mesh mesh;
     cw_label_table labels; /* of all parts; in the first one */
+    cwi_pictures pictures; /* the same */
     char name[CWI_NAME_BYTES];
 } held;
 
@@ -27,6 +30,8 @@ typedef struct split {
     cw_part *parts;
     held *held;
     size_t count;
+    size_t textures;  /* sets of them */
+    uint32_t *latest; /* one for each set and for none; NULL where there is no set */
 } split;
 
 static size_t run_start(const split *s, size_t run)
@@ -37,6 +42,20 @@ static size_t run_start(const split *s, size_t run)
 }
 
 /* --- runs joined to parts ----------------------------------------------------------------- */
+
+/* Joins the runs of one object with the same textures. latest: one for each set of textures, and for none */
+static void join_textured(split *s, uint32_t *latest, size_t count)
+{
+    const cwi_mark *marks = s->marks->items;
+    for (size_t n = 0; n < count; n++)
+        latest[n] = NONE;
+    for (uint32_t run = 0; run < s->marks->count; run++) {
+        uint32_t *last = &latest[marks[run].textures];
+        if (*last != NONE && marks[*last].object == marks[run].object)
+            cwi_sets_join(s->part_of, *last, run);
+        *last = run;
+    }
+}
 
 /* Joins runs that share a vertex to one set. */
 static void join_runs(split *s)
@@ -144,21 +163,42 @@ static void name_parts(split *s)
         s->parts[p] = (cw_part){.mesh = &s->held[p].mesh};
     for (size_t run = s->marks->count; run-- > 0;)
         if (s->part_of[run] != NONE) {
+            const cw_textures *sets = s->held->pictures.sets;
             const cwi_mark *mark = &s->marks->items[run];
             const char *name = s->marks->names + mark->name;
             const uint32_t p = s->part_of[run];
             cwi_clean_name(name, strlen(name), s->held[p].name);
             s->parts[p].name = s->held[p].name[0] ? s->held[p].name : NULL;
             s->parts[p].label = find_label(s, mark);
+            s->parts[p].textures = mark->textures ? &sets[mark->textures - 1] : NULL;
         }
     for (size_t p = 0; p < s->count; p++)
         if (s->parts[p].label)
             drop_label_color(&s->held[p].mesh, s->parts[p].label);
 }
 
+/* Gives what has other textures other vertices, so that it is another part. sets: of textures */
+static cw_status separate_textures(const split *s, size_t sets, cw_error *err)
+{
+    const size_t count = s->whole->triangle_count;
+    uint32_t *textures = sets ? cwi_alloc_array(count, sizeof *textures) : NULL;
+    if (!sets)
+        return CW_OK;
+    if (!textures)
+        return cwi_fail_memory(err);
+    for (size_t run = 0; run < s->run_count; run++)
+        for (size_t t = run_start(s, run); t < run_start(s, run + 1); t++)
+            textures[t] = s->marks->items[run].textures;
+    const cw_status st = cwi_separate_textures(s->whole, textures, err);
+    cwi_free(textures);
+    return st;
+}
+
 static bool make_parts(split *s)
 {
     if (s->run_count > 1) {
+        if (s->latest)
+            join_textured(s, s->latest, s->textures + 1);
         join_runs(s);
         number_parts(s);
     }
@@ -220,23 +260,30 @@ cw_status cwi_parts_split(cwi_mesh_input *in, cw_mesh *mesh, cw_part **parts, si
 {
     split s = {
         .whole = mesh, .marks = &in->marks, .run_count = in->marks.count ? in->marks.count : 1};
-    const size_t vertices = s.run_count > 1 ? mesh->vertex_count : 0;
     cw_status st = limit_memory(in, mesh, err);
+    if (st == CW_OK && s.run_count > 1)
+        st = separate_textures(&s, in->pictures.set_count, err);
     if (st != CW_OK)
         return st;
+    const size_t vertices = s.run_count > 1 ? mesh->vertex_count : 0;
+    s.textures = in->pictures.set_count;
+    s.latest = s.textures ? cwi_alloc_array(s.textures + 1, sizeof *s.latest) : NULL;
     s.part_of = cwi_sets_alloc(s.run_count);
     s.run_of = cwi_alloc_array(vertices, sizeof *s.run_of);
     s.new = cwi_alloc_array(vertices, sizeof *s.new);
-    const bool ok = s.part_of && s.run_of && s.new &&make_parts(&s);
+    const bool ok = s.part_of && s.run_of && s.new && !s.latest == !s.textures &&make_parts(&s);
     if (ok) {
         s.held->labels = in->labels;
         in->labels = (cw_label_table){0};
+        s.held->pictures = in->pictures;
+        in->pictures = (cwi_pictures){0};
         name_parts(&s);
     } else
         cw_parts_free(s.parts, s.parts ? s.count : 0);
     cwi_free(s.part_of);
     cwi_free(s.run_of);
     cwi_free(s.new);
+    cwi_free(s.latest);
     *parts = ok ? s.parts : NULL;
     *count = ok ? s.count : 0;
     return ok ? CW_OK : cwi_fail_memory(err);
@@ -248,6 +295,7 @@ void cw_parts_free(cw_part *parts, size_t count)
     for (size_t p = 0; p < count; p++) {
         cw_mesh_free(&h[p].mesh);
         cw_label_table_free(&h[p].labels);
+        cwi_pictures_free(&h[p].pictures);
     }
     cwi_free(parts);
 }

@@ -3,6 +3,7 @@
 
 #include "core/base/memory.h"
 #include "core/base/status.h"
+#include "core/base/text.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -56,6 +57,97 @@ static cw_status read_numbers(cwi_scan *s, double number[3], int *count, cw_erro
     return st;
 }
 
+/* --- pictures ------------------------------------------------------------------------------ */
+
+/* Options before the name of a picture, and how many words follow each. Numbers follow a placing: one to
+ * three of them. */
+static const struct {
+    const char *name;
+    int words;
+    bool is_placing;
+} map_options[] = {
+    {"-blendu", 1, false}, {"-blendv", 1, false}, {"-boost", 1, false},   {"-bm", 1, false},
+    {"-cc", 1, false},     {"-clamp", 1, false},  {"-imfchan", 1, false}, {"-mm", 2, false},
+    {"-o", 3, true},       {"-s", 3, true},       {"-t", 3, true},        {"-texres", 1, false},
+    {"-type", 1, false},
+};
+
+/* Skips a word and the blanks behind it. */
+static const char *skip_word(const char *at)
+{
+    at += strcspn(at, " \t");
+    return at + strspn(at, " \t");
+}
+
+static bool is_number(const char *at)
+{
+    double number;
+    return cwi_parse_double(&at, &number) && (*at == '\0' || *at == ' ' || *at == '\t');
+}
+
+/* Returns the name behind the options of a line of a picture. */
+static const char *skip_options(cwi_obj_materials *m, const char *at)
+{
+    while (*at == '-') {
+        const size_t length = strcspn(at, " \t");
+        size_t n = 0;
+        while (n < sizeof map_options / sizeof *map_options &&
+               (strlen(map_options[n].name) != length ||
+                strncmp(map_options[n].name, at, length) != 0))
+            n++;
+        if (n == sizeof map_options / sizeof *map_options)
+            break;
+        m->has_options = m->has_options || map_options[n].is_placing;
+        at = skip_word(at);
+        for (int word = 0; word < map_options[n].words && *at; word++)
+            if (!map_options[n].is_placing || is_number(at))
+                at = skip_word(at);
+    }
+    return at;
+}
+
+/* Returns the picture of a material that a key names; NULL for a key of another kind. */
+static cw_texture *find_picture(cwi_obj_material *m, const cwi_word *key)
+{
+    const bool is_normal = cwi_word_is(key, "norm"), is_bump = cwi_word_is(key, "map_Bump") ||
+                                                               cwi_word_is(key, "map_bump") ||
+                                                               cwi_word_is(key, "bump");
+    if (is_normal || (is_bump && !m->has_normal_map)) {
+        m->has_normal_map = is_normal;
+        return &m->set.normal;
+    }
+    return cwi_word_is(key, "map_Kd")   ? &m->set.color
+           : cwi_word_is(key, "map_Ke") ? &m->set.emissive
+                                        : NULL;
+}
+
+static bool is_other_picture(const cwi_word *key)
+{
+    return (key->size > 4 && memcmp(key->text, "map_", 4) == 0) || cwi_word_is(key, "disp") ||
+           cwi_word_is(key, "decal") || cwi_word_is(key, "refl");
+}
+
+static cw_status read_picture(cwi_obj_materials *m, cw_texture *picture, cwi_scan *s,
+                              cw_error *err)
+{
+    char line[CWI_REST_BYTES];
+    cw_status st = cwi_scan_rest(s, line, err);
+    if (st != CW_OK || !m->in->pictures.is_wanted)
+        return st;
+    return cwi_picture_read(m->in, skip_options(m, line), picture, err);
+}
+
+/* Adds the pictures of materials from `first` on to those of the file. */
+static cw_status add_textures(cwi_obj_materials *m, size_t first, cw_error *err)
+{
+    cw_status st = CW_OK;
+    for (size_t n = first; n < m->count && st == CW_OK; n++) {
+        m->items[n].set.repeats = true;
+        st = cwi_textures_add(m->in, &m->items[n].set, &m->items[n].textures, err);
+    }
+    return st;
+}
+
 static cw_status read_line(cwi_obj_materials *m, size_t first, cwi_scan *s, cw_error *err)
 {
     char name[CWI_REST_BYTES];
@@ -72,7 +164,10 @@ static cw_status read_line(cwi_obj_materials *m, size_t first, cwi_scan *s, cw_e
     cwi_obj_material *material = &m->items[m->count - 1];
     const bool is_color = cwi_word_is(&word, "Kd"), is_opacity = cwi_word_is(&word, "d"),
                is_transparency = cwi_word_is(&word, "Tr");
-    material->has_texture = material->has_texture || cwi_word_is(&word, "map_Kd");
+    cw_texture *picture = find_picture(material, &word);
+    if (picture)
+        return read_picture(m, picture, s, err);
+    m->has_others = m->has_others || is_other_picture(&word);
     if (is_color || is_opacity || is_transparency)
         st = read_numbers(s, number, &count, err);
     for (int c = 0; c < 3 && is_color && count; c++)
@@ -100,7 +195,7 @@ static cw_status read_lines(cwi_obj_materials *m, const cwi_input *file, cw_erro
             st = cwi_scan_next_line(&s, &found, err);
     }
     cwi_scan_close(&s);
-    return st;
+    return st == CW_OK ? add_textures(m, first, err) : st;
 }
 
 cw_status cwi_obj_read_materials(cwi_obj_materials *m, const char *name, cw_error *err)

@@ -3,6 +3,7 @@
 #define FORMATS_OBJ_OBJ_MATERIALS_H
 
 #include "formats/mesh/face_colors.h"
+#include "formats/mesh/picture_store.h"
 
 /* A material: its diffuse colour and opacity. */
 typedef struct cwi_obj_material {
@@ -10,7 +11,10 @@ typedef struct cwi_obj_material {
     const char *text; /* the same, while sorting */
     size_t order;
     uint8_t color[4]; /* sRGB, as other programs write it */
-    bool has_color, has_texture;
+    bool has_color,
+        has_normal_map; /* the last: by `norm`, which counts for more than a bump map */
+    cw_textures set;
+    uint32_t textures; /* those of the file, once its set was added; 0: none */
 } cwi_obj_material;
 
 /* The materials of a file, sorted by name; of equal names the first counts. Zero it, except for `in`. */
@@ -19,7 +23,8 @@ typedef struct cwi_obj_materials {
     cwi_obj_material *items;
     char *names; /* each ends with a zero */
     size_t count, capacity, name_bytes, name_capacity, files;
-    bool is_missing; /* a file of materials is not there, or damaged */
+    bool is_missing;              /* a file of materials is not there, or damaged */
+    bool has_options, has_others; /* placings of textures; pictures that are not read */
 } cwi_obj_materials;
 
 /* Reads the file of materials that the line "mtllib NAME" names. One that is missing, unsafe or no text is

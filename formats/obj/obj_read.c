@@ -5,6 +5,7 @@
 #include "core/base/text.h"
 #include "formats/obj/obj_format.h"
 #include "formats/obj/obj_materials.h"
+#include "formats/obj/obj_places.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -27,7 +28,7 @@ typedef struct obj {
     cwi_obj_materials materials;
     cwi_face_colors faces;
     const cwi_obj_material *material; /* of the next faces; valid until more are read */
-    bool has_texture, has_texcoords;
+    cwi_obj_places places;
 } obj;
 
 /* --- normals ----------------------------------------------------------------------------- */
@@ -106,15 +107,14 @@ static int64_t to_index(int64_t number, size_t count)
     return number < 0 ? (int64_t)count + number : number - 1;
 }
 
-/* Parses "v", "v/t", "v//n" or "v/t/n"; a normal of 0 means none. */
-static bool parse_corner(const cwi_word *word, int64_t *vertex, int64_t *normal)
+/* Parses "v", "v/t", "v//n" or "v/t/n"; a place or normal of 0 means none. */
+static bool parse_corner(const cwi_word *word, int64_t *vertex, int64_t *place, int64_t *normal)
 {
     const char *at = word->text, *end = word->text + word->size;
-    int64_t texture;
-    *normal = 0;
+    *place = *normal = 0;
     if (!cwi_parse_int(&at, vertex))
         return false;
-    if (*at == '/' && *++at != '/' && at < end && !cwi_parse_int(&at, &texture))
+    if (*at == '/' && *++at != '/' && at < end && !cwi_parse_int(&at, place))
         return false;
     if (at < end && *at == '/' && ++at < end && !cwi_parse_int(&at, normal))
         return false;
@@ -123,8 +123,8 @@ static bool parse_corner(const cwi_word *word, int64_t *vertex, int64_t *normal)
 
 static cw_status add_corner(obj *o, const cwi_scan *s, const cwi_word *word, cw_error *err)
 {
-    int64_t vertex, normal;
-    if (!parse_corner(word, &vertex, &normal))
+    int64_t vertex, place, normal;
+    if (!parse_corner(word, &vertex, &place, &normal))
         return cwi_scan_fail(s, word, "a corner", "numbers as in 1/2/3", err);
     const int64_t index = to_index(vertex, o->build.point_count);
     if (vertex == 0 || index < 0 || index >= UINT32_MAX)
@@ -132,6 +132,8 @@ static cw_status add_corner(obj *o, const cwi_scan *s, const cwi_word *word, cw_
                         "line %zu: a corner names vertex %lld; there are %zu so far, from 1",
                         s->line, (long long)vertex, o->build.point_count);
     cw_status st = cwi_build_corner(&o->build, index, err);
+    if (st == CW_OK)
+        st = cwi_obj_name_place(&o->places, &o->build, place, err);
     if (st == CW_OK && o->normal_count)
         st = name_normal(o, (uint32_t)index, normal ? to_index(normal, o->normal_count) : -1,
                          err);
@@ -209,10 +211,8 @@ static cw_status read_comment(obj *o, cwi_scan *s, cw_mesh *mesh, cw_mesh_file *
 static cw_status color_faces(obj *o, cw_error *err)
 {
     const cwi_obj_material *m = o->material;
-    if (o->faces.count < o->build.triangle_count && m)
-        o->has_texture = o->has_texture || m->has_texture;
     return cwi_color_faces(&o->faces, o->build.triangle_count,
-                           m && m->has_color ? m->color : NULL, err);
+                           m && m->has_color && !m->textures ? m->color : NULL, err);
 }
 
 static cw_status read_material(obj *o, cwi_scan *s, bool is_file, cw_error *err)
@@ -224,6 +224,9 @@ static cw_status read_material(obj *o, cwi_scan *s, bool is_file, cw_error *err)
     if (st == CW_OK && is_file)
         st = cwi_obj_read_materials(&o->materials, name, err);
     o->material = is_file ? NULL : cwi_obj_find_material(&o->materials, name);
+    if (st == CW_OK && o->materials.in->pictures.set_count)
+        st = cwi_mesh_begin_textures(o->build.in, o->material ? o->material->textures : 0,
+                                     o->build.triangle_count, err);
     return st == CW_OK ? cwi_scan_end_line(s, err) : st;
 }
 
@@ -259,7 +262,7 @@ static cw_status read_line(obj *o, cwi_scan *s, cw_mesh *mesh, cw_mesh_file *met
     else if (cwi_word_is(&word, "usemtl") || cwi_word_is(&word, "mtllib"))
         return read_material(o, s, word.text[0] == 'm', err);
     else if (cwi_word_is(&word, "vt"))
-        o->has_texcoords = true;
+        st = cwi_obj_read_place(&o->places, s, err);
     else if (cwi_word_is(&word, "l") || cwi_word_is(&word, "p"))
         metadata->skipped++;
     return st == CW_OK ? cwi_scan_end_line(s, err) : st;
@@ -305,11 +308,15 @@ static void free_obj(obj *o)
     cwi_free(o->colors);
     cwi_obj_materials_free(&o->materials);
     cwi_face_colors_free(&o->faces);
+    cwi_obj_places_free(&o->places);
 }
 
 cw_status cwi_obj_read(cwi_mesh_input *in, cw_mesh *mesh, cw_mesh_file *metadata, cw_error *err)
 {
-    obj o = {.build = {.in = in, .base = 1}, .materials = {.in = in}, .faces = {.in = in}};
+    obj o = {.build = {.in = in, .base = 1},
+             .materials = {.in = in},
+             .faces = {.in = in},
+             .places = {.in = in}};
     cwi_scan s = {0};
     cw_status st = cwi_scan_open_text(&s, &in->file, 0, &in->desc.progress, err);
     s.by_line = true;
@@ -318,13 +325,18 @@ cw_status cwi_obj_read(cwi_mesh_input *in, cw_mesh *mesh, cw_mesh_file *metadata
     if (st == CW_OK)
         st = color_faces(&o, err);
     if (st == CW_OK)
+        st = cwi_obj_keep_fans(&o.places, &o.build, err);
+    if (st == CW_OK)
         st = cwi_build_finish(&o.build, mesh, metadata, err);
+    if (st == CW_OK)
+        st = cwi_obj_keep_places(&o.places, &o.build, mesh, err);
     if (st == CW_OK)
         st = keep_normals(&o, mesh, err);
     if (st == CW_OK)
         st = keep_colors(&o, mesh, err);
-    cwi_say_left_out(metadata, o.has_texture, "textures");
-    cwi_say_left_out(metadata, o.has_texcoords, "texture coordinates");
+    cwi_say_left_out(metadata, o.places.is_broken, "texture coordinates that are not there");
+    cwi_say_left_out(metadata, o.materials.has_options, "-o, -s and -t of textures");
+    cwi_say_left_out(metadata, o.materials.has_others, "other pictures of materials");
     cwi_say_left_out(metadata, o.materials.is_missing,
                      "materials of a missing or damaged file");
     cwi_scan_close(&s);

@@ -6,12 +6,18 @@
 #include "core/mesh/corner_table.h"
 #include "core/texture/split_seams.h"
 #include "formats/obj/obj_format.h"
+#include "formats/obj/obj_pictures.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { MATERIAL_BYTES = CWI_NAME_BYTES + 32, COLOR_NAME_BYTES = 24, TEXTURE_DIGITS = 9 };
+enum {
+    MATERIAL_BYTES = CWI_NAME_BYTES + 32,
+    COLOR_NAME_BYTES = 24,
+    SINGLE_DIGITS = 9,
+    DOUBLE_DIGITS = 17
+};
 
 static unsigned char *encode_place(const cwi_part *part, size_t v, unsigned char *to)
 {
@@ -58,7 +64,7 @@ static uint64_t place_of(const cwi_part *part, size_t t, int c)
 /* Encodes a face. Numbers start at 1, and continue from object to object. */
 static unsigned char *encode_face(const cwi_part *part, size_t t, unsigned char *to)
 {
-    if (part->face_colors)
+    if (part->face_colors && !part->textures)
         to = encode_material(part, t, to);
     *to++ = 'f';
     for (int c = 0; c < 3; c++) {
@@ -75,7 +81,7 @@ static unsigned char *encode_face(const cwi_part *part, size_t t, unsigned char 
 
 static bool has_material(const cwi_part *part)
 {
-    return part->has_color && !part->face_colors;
+    return part->has_color && !part->face_colors && !part->textures;
 }
 
 /* Prints the name of a part's material: one word that no other label or colour has. */
@@ -108,7 +114,7 @@ static int compare_colors(const void *a, const void *b)
 static bool has_face_colors(const cwi_parts *parts)
 {
     for (size_t i = 0; i < parts->count; i++)
-        if (parts->items[i].face_colors)
+        if (parts->items[i].face_colors && !parts->items[i].textures)
             return true;
     return false;
 }
@@ -162,8 +168,18 @@ static cw_status write_materials(const cwi_parts *parts, cwi_mesh_output *out, c
     }
     if (st == CW_OK && has_face_colors(parts))
         st = write_face_materials(parts, out, err);
+    path[length] = '\0';
+    if (st == CW_OK)
+        st = cwi_obj_write_textures(parts, out, path, err);
     cwi_free(path);
     return st;
+}
+
+/* Returns the digits that give a coordinate back to the bit when it is taken from 1 again: near 1 those of a
+ * double. */
+static int digits_of_place(double v)
+{
+    return v > 0.5 || v < -0.5 ? DOUBLE_DIGITS : SINGLE_DIGITS + 1;
 }
 
 /* Writes texture coordinates; in OBJ the second one goes up. seams: zeroed if vertices have them */
@@ -178,8 +194,8 @@ static cw_status write_places(const cwi_part *part, const cwi_texture_seams *sea
         const uint32_t at = seams->number ? seams->corner[n] : (uint32_t)n;
         const double u = at == CWI_NO_CORNER ? 0 : (double)uv[2 * (size_t)at],
                      v = at == CWI_NO_CORNER ? 0 : 1 - (double)uv[2 * (size_t)at + 1];
-        unsigned char *to = cwi_put_decimal(cwi_put_text(line, "vt "), u, TEXTURE_DIGITS);
-        to = cwi_put_text(cwi_put_decimal(cwi_put_text(to, " "), v, TEXTURE_DIGITS), "\n");
+        unsigned char *to = cwi_put_decimal(cwi_put_text(line, "vt "), u, SINGLE_DIGITS);
+        to = cwi_put_text(cwi_put_decimal(cwi_put_text(to, " "), v, digits_of_place(v)), "\n");
         st = cwi_outfile_write(out->file, line, (size_t)(to - line), err);
     }
     return st;
@@ -204,11 +220,14 @@ static cw_status write_faces(cwi_part *part, cwi_mesh_output *out, uint64_t *pla
     return st;
 }
 
-static cw_status write_object(cwi_part *part, cwi_mesh_output *out, uint64_t *places,
-                              cw_error *err)
+static cw_status write_object(const cwi_parts *parts, cwi_part *part, cwi_mesh_output *out,
+                              uint64_t *places, cw_error *err)
 {
     char material[MATERIAL_BYTES];
     cw_status st = cwi_outfile_printf(out->file, err, "o %s\n", part->name);
+    if (st == CW_OK && part->textures)
+        st = cwi_outfile_printf(out->file, err, "usemtl texture_%zu\n",
+                                cwi_obj_textures(parts, part));
     if (st == CW_OK && has_material(part)) {
         print_material(part, material);
         st = cwi_outfile_printf(out->file, err, "usemtl %s\n", material);
@@ -233,10 +252,11 @@ cw_status cwi_obj_write(const cwi_parts *parts, cwi_mesh_output *out, cw_error *
     uint64_t places = 0;
     bool has_materials = has_face_colors(parts);
     for (size_t i = 0; i < parts->count; i++)
-        has_materials = has_materials || has_material(&parts->items[i]);
+        has_materials =
+            has_materials || has_material(&parts->items[i]) || parts->items[i].textures;
     if (st == CW_OK && has_materials)
         st = write_materials(parts, out, err);
     for (size_t i = 0; i < parts->count && st == CW_OK; i++)
-        st = write_object(&parts->items[i], out, &places, err);
+        st = write_object(parts, &parts->items[i], out, &places, err);
     return st;
 }

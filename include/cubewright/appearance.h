@@ -20,6 +20,8 @@ typedef struct cw_surface_look {
         *normal_map; /* borrowed; in tangent space, as cw_bake_normals() makes it, for a
                                    mesh with normals; default: none */
     const cw_image *color_map; /* borrowed; sRGB, multiplied with the colours; default: none */
+    const cw_image
+        *occlusion_map; /* borrowed; its red darkens the light from everywhere; default: none */
 } cw_surface_look;
 
 /* Settings of the measurement. Zero-initialise the struct and set what you need; a zero field means

@@ -62,6 +62,20 @@ typedef struct cw_atlas_facts {
 CW_API CW_NODISCARD cw_status cw_mesh_atlas(cw_mesh *mesh, const cw_atlas_desc *desc,
                                             cw_atlas_facts *facts, cw_error *err);
 
+/* Gives several meshes texture coordinates in one square: parts of a file, or levels of detail, which then share
+ * their textures.
+ *
+ * meshes  count of them; on failure some may have texture coordinates that are not final
+ * scales  count of them: texels of a mesh for its mm, as a share of those of the first, such as 1, 0.5, 0.25 for
+ *         levels of detail; NULL: all the same
+ * desc    borrowed; NULL means all defaults
+ * facts   of all together; texels_per_mm is that of a scale of 1; may be NULL
+ *
+ * Returns as cw_mesh_atlas(); CW_ERR_ARGUMENT for a count of 0, and a scale that is not positive */
+CW_API CW_NODISCARD cw_status cw_meshes_atlas(cw_mesh *const *meshes, const double *scales,
+                                              size_t count, const cw_atlas_desc *desc,
+                                              cw_atlas_facts *facts, cw_error *err);
+
 /* Splits vertices whose corners have different texture coordinates, so that each vertex has one, for
  * programs that know values of vertices alone. The attribute CW_TEXTURE_COORDINATES then has
  * CW_ON_VERTICES. A mesh without it stays as it is.
@@ -70,6 +84,30 @@ CW_API CW_NODISCARD cw_status cw_mesh_atlas(cw_mesh *mesh, const cw_atlas_desc *
  *
  * Returns  CW_ERR_NO_MEMORY, or as cw_mesh_check() */
 CW_API CW_NODISCARD cw_status cw_mesh_split_seams(cw_mesh *mesh, cw_error *err);
+
+/* How far a texture has moved. */
+typedef struct cw_texture_distance {
+    size_t samples; /* points of the mesh that were compared */
+    double max_mm;  /* the largest distance of one */
+    double mean_mm; /* over the area of the mesh */
+    double
+        side_mm; /* what the texture's side measures on the full mesh, in the mean: a texture of n
+                       texels has n / side_mm for a mm */
+} cw_texture_distance;
+
+/* Measures how far the texture of a mesh has moved from where it was on another one, such as before it was
+ * simplified. A point of the mesh is as far from a point of the full mesh as the root of the sum of two
+ * squares says: that of the way in space, and that of the way in the texture, on the surface. The nearest
+ * point counts.
+ *
+ * mesh, full  with texture coordinates; borrowed
+ * threads     0: one per processor
+ * Returns     CW_ERR_ARGUMENT  no texture coordinates; those of the full mesh are not all finite
+ *             CW_ERR_EMPTY     these cover no area; CW_ERR_NO_MEMORY; or as cw_mesh_check()
+ * Source      points in space and texture as those of five dimensions [Garland1998] */
+CW_API CW_NODISCARD cw_status cw_mesh_texture_distance(const cw_mesh *mesh, const cw_mesh *full,
+                                                       int threads, cw_texture_distance *facts,
+                                                       cw_error *err);
 
 #ifdef __cplusplus
 }

@@ -10,7 +10,15 @@ extern "C" {
 #endif
 
 /* The maps that can be baked: constant, and name. One that a later version adds stands at the end. */
-#define CW_MAP_TABLE(X) X(CW_MAP_NORMALS, "normals")
+#define CW_MAP_TABLE(X)                                                                        \
+    X(CW_MAP_NORMALS, "normals")                                                               \
+    X(CW_MAP_OCCLUSION, "occlusion")                                                           \
+    X(CW_MAP_CURVATURE, "curvature")                                                           \
+    X(CW_MAP_THICKNESS, "thickness")                                                           \
+    X(CW_MAP_COLORS, "colors")
+
+/* Maps that are made by rays, occlusion and thickness, have a fourth of the size along each side. */
+#define CW_OCCLUSION_DIVISOR 4
 
 /* Identifies a map. */
 typedef enum cw_map {
@@ -33,8 +41,11 @@ typedef struct cw_bake_desc {
     double reach_mm;  /* how far the full surface may be; default: 4 % of the box's diagonal */
     int threads;      /* default: one per processor */
     cw_progress progress; /* default: none */
-    /* Of a pipeline: the maps, a bit 1u << cw_map for each; default: that of normals */
-    unsigned maps;
+    unsigned maps;        /* a bit 1u << cw_map for each; default: that of normals */
+    double occlusion_mm;  /* farther than this nothing darkens; default: 10 % of the diagonal */
+    double thickness_mm;  /* that is white; default: 10 % of the diagonal */
+    double curvature_max; /* 1 / mm: that is white; default: 95 % of the vertices have less */
+    bool deep;            /* fill cw_image.deep, too: 16 bits a channel */
 } cw_bake_desc;
 
 /* Facts on a finished bake. */
@@ -45,7 +56,9 @@ typedef struct cw_bake_facts {
     double max_mm;   /* the largest distance that was bridged, and */
     double mean_mm;  /* the mean */
     double mean_deg; /* the mean angle between the normals of both surfaces */
-    double reach_mm; /* as in the settings, or the default */
+    /* As in the settings, or their defaults: */
+    double reach_mm, occlusion_mm, thickness_mm;
+    double curvature_max; /* 1 / mm; 0: no curvature was asked for */
 } cw_bake_facts;
 
 /* Bakes the normals of a full surface into a normal map in the tangent space of [Mikkelsen2008], as glTF
@@ -67,6 +80,41 @@ typedef struct cw_bake_facts {
 CW_API CW_NODISCARD cw_status cw_bake_normals(const cw_mesh *mesh, const cw_mesh *full,
                                               const cw_bake_desc *desc, cw_image *image,
                                               cw_bake_facts *facts, cw_error *err);
+
+/* Bakes maps of a full surface. Each texel takes what the surface has at the point that cw_bake_normals()
+ * takes the normal of; places that no texel of a chart covers have the value for no surface.
+ *
+ * CW_MAP_NORMALS    as of cw_bake_normals()
+ * CW_MAP_OCCLUSION  the share of the light of an even sky that nothing within occlusion_mm keeps off, by 32
+ *                   rays [Zhukov1998]: white is open
+ * CW_MAP_CURVATURE  the mean curvature [Meyer2003], smoothed over two rings: grey is flat, white a bump,
+ *                   black a dent of curvature_max or more
+ * CW_MAP_THICKNESS  the mean way through the solid within 30 degrees, by 7 rays [Shapira2008]: white is
+ *                   thickness_mm or more
+ * CW_MAP_COLORS     the colours of the full mesh's vertices
+ *
+ * Occlusion and thickness have size / CW_OCCLUSION_DIVISOR texels along each side.
+ *
+ * mesh    as in cw_bake_normals()
+ * full    borrowed; the same, and with colours if those are asked for
+ * desc    borrowed; NULL means all defaults
+ * images  CW_MAP_COUNT of them: those that are asked for are allocated and filled on success, the others
+ *         zeroed; free them with cw_image_free()
+ * facts   may be NULL; texels and misses are those of the largest map
+ *
+ * Returns as cw_bake_normals(); CW_ERR_ARGUMENT for colours that the full mesh lacks
+ * Threads reentrant; the same to the bit for any number of threads */
+CW_API CW_NODISCARD cw_status cw_bake_maps(const cw_mesh *mesh, const cw_mesh *full,
+                                           const cw_bake_desc *desc, cw_image *images,
+                                           cw_bake_facts *facts, cw_error *err);
+
+/* Bakes the same maps for several meshes that share a square, of cw_meshes_atlas(): parts, or levels of detail.
+ * meshes  count of them; borrowed
+ * Returns as cw_bake_maps() */
+CW_API CW_NODISCARD cw_status cw_bake_meshes(const cw_mesh *const *meshes, size_t count,
+                                             const cw_mesh *full, const cw_bake_desc *desc,
+                                             cw_image *images, cw_bake_facts *facts,
+                                             cw_error *err);
 
 #ifdef __cplusplus
 }

@@ -427,12 +427,16 @@ typedef struct cw_mesh_file {
  * EXT_mesh_gpu_instancing. Morph targets are applied by the weights of the node, else of the mesh, and
  * skins at rest: their joints place the vertices, not the node. A mirrored mesh has its winding
  * reversed, so that triangles stay counter-clockwise from outside. Animations are
- * ignored, and images are never read. A node with a scale of 0 along all axes is hidden, as are one that
+ * ignored. A node with a scale of 0 along all axes is hidden, as are one that
  * KHR_node_visibility hides and its children, and left out.
  *
  * Files of VTK in pieces (.pvtp) are joined: their seams are closed where vertices are at the same place to
  * the bit. GIfTI and FreeSurfer's surfaces are in RAS millimetres; the transform that they state to the
  * frame of the scanner is applied.
+ *
+ * Texture coordinates of OBJ and glTF (the first set, moved by KHR_texture_transform) are those of corners:
+ * CW_TEXTURE_COORDINATES. Vertices of glTF that differ in them alone were split at a seam, and become one. Pictures
+ * are read with parts (cw_parts_read()).
  *
  * From 3MF all objects of the build are placed, with components, in the unit that the file
  * names. A mirrored object also has its winding reversed.
@@ -462,7 +466,8 @@ typedef struct cw_mesh_file {
 CW_NODISCARD CW_API cw_status cw_mesh_read(const char *path, const cw_mesh_read_desc *desc,
                                            cw_mesh *mesh, cw_mesh_file *file, cw_error *err);
 
-/* A picture on a surface: the bytes of its file, PNG or JPEG. */
+/* A picture on a surface: the bytes of its file. PNG and JPEG are known; those of others, such as WebP and
+ * KTX2, are read and written as they are. */
 typedef struct cw_texture {
     const uint8_t *bytes; /* borrowed; NULL: none */
     size_t size;          /* number of bytes */
@@ -472,6 +477,19 @@ typedef struct cw_texture {
 typedef struct cw_textures {
     uint32_t version;  /* 0: the first version of this struct */
     cw_texture normal; /* a normal map in tangent space, see cw_bake_normals() */
+
+    /* The members that follow are those of glTF's materials. */
+    cw_texture color;              /* base colour, sRGB; its alpha is opacity */
+    cw_texture metallic_roughness; /* green: roughness; blue: metalness */
+    cw_texture occlusion;          /* red: how much light from around arrives */
+    cw_texture emissive;           /* light of its own, sRGB */
+    bool
+        has_factors; /* the next five count; default: white, not metallic, roughness 0.8, no light */
+    float color_factor[4]; /* linear; multiplied with the colour */
+    float metallic_factor, roughness_factor;
+    float emissive_factor[3];
+    float normal_scale, occlusion_strength; /* 0: 1 */
+    bool repeats; /* the texture goes on beyond 0 and 1; default: it ends there */
 } cw_textures;
 
 /* Decodes a picture on a surface. PNG of any kind but palettes of colours becomes red, green, blue and
@@ -514,7 +532,9 @@ typedef struct cw_part {
  *
  * parts    set to an array of *count, which owns the meshes: free it with cw_parts_free().
  *          Names are NULL where the file has none; bytes other than printable UTF-8 become '_'.
- *          Labels are those that our glTF states, with their colour and codes; else NULL
+ *          Labels are those that our glTF states, with their colour and codes; else NULL.
+ *          Parts whose materials have pictures have textures: an object with several such materials
+ *          is a part for each
  * file     as in cw_mesh_read()
  * Returns  as cw_mesh_read()
  * Cost     that of cw_mesh_read() and, if there are several, as much memory once more */
@@ -622,7 +642,8 @@ CW_NODISCARD CW_API cw_status cw_mesh_write(const char *path, const cw_mesh *mes
  *
  * The label of a part colours it, or the one colour that all its vertices have: by a material in glTF,
  * by a colour group in 3MF. OBJ gets a second file for that and for colours of faces, with the path's
- * stem and the extension .mtl. In the extras of a glTF
+ * stem and the extension .mtl. Pictures of textures are files beside it, named by the stem and their use
+ * (_color.jpg, _normal.png), with a number where another file has that name. In the extras of a glTF
  * node are the label's value, colour and codes. In the other formats its value and colour are
  * those of the vertices, if all parts have them.
  *
@@ -767,8 +788,9 @@ typedef enum cw_keeps {
     CW_KEEPS_FACE_COLORS = 512, /* CW_FACE_COLORS */
     CW_KEEPS_OPACITY = 1024,    /* of vertices, beside their colours */
     CW_KEEPS_TEXTURE = 2048,    /* CW_TEXTURE_COORDINATES; glTF splits vertices at seams */
-    CW_KEEPS_PICTURES = 4096,   /* cw_part.textures */
-    CW_KEEPS_ALL = 8191
+    CW_KEEPS_PICTURES = 4096,   /* cw_part.textures: colour, normal and emissive pictures */
+    CW_KEEPS_MATERIALS = 8192,  /* the other pictures, and factors */
+    CW_KEEPS_ALL = 16383
 } cw_keeps;
 
 /* A format that this build or another one reads or writes. */

@@ -131,8 +131,8 @@ CW_NODISCARD CW_API cw_status cw_mesh_split(const cw_mesh *mesh, cw_mesh **solid
 CW_API void cw_meshes_free(cw_mesh *meshes, size_t count);
 
 /* Merges vertices at equal positions (0 equals -0) into the first of them, with its normal,
- * colour and other attributes. Triangles that name a vertex twice are left out, and then
- * vertices that no triangle names.
+ * colour and other attributes. Texture coordinates of vertices become those of corners, so that seams stay.
+ * Triangles that name a vertex twice are left out, and then vertices that no triangle names.
  *
  * mesh     in place: its arrays stay where they are, and only get shorter; unchanged on failure
  * merged   number of vertices at the place of another; may be NULL

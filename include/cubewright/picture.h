@@ -27,6 +27,7 @@ CW_API void cw_picture_free(cw_picture *picture);
 typedef struct cw_image {
     size_t width, height; /* pixels */
     uint8_t *pixels; /* height x width x 4: sRGB and alpha, not premultiplied; top row first */
+    uint16_t *deep;  /* the same in 16 bits, for PNG files of these; NULL: there are only 8 */
 } cw_image;
 
 /* Allocates zeroed pixels.

@@ -58,6 +58,7 @@ typedef enum cw_surface_source {
     CW_SOURCE_SLICES, /* slices that are read one after the other: the surface is never whole */
     CW_SOURCE_PARTS,  /* parts of a surface, by several processes, joined later */
     CW_SOURCE_LABELS, /* a label map: several surfaces that share their interfaces */
+    CW_SOURCE_MESH,   /* a mesh that is there: nothing is extracted */
     CW_SOURCE_COUNT
 } cw_surface_source;
 
@@ -105,8 +106,9 @@ typedef struct cw_pipeline_desc {
     const char *spool_path;  /* of slices: temporary files stand in the folder of this path */
     cw_pipeline_watch watch; /* default: none */
     const cw_close_handles_desc *close_handles; /* close its small handles and tunnels */
-    const cw_atlas_desc *atlas; /* give it texture coordinates; levels of detail share them */
-    const cw_bake_desc *bake;   /* bake maps of the surface before simplify or lod; needs atlas.
+    const cw_atlas_desc
+        *atlas;               /* give it texture coordinates; levels of detail share a square */
+    const cw_bake_desc *bake; /* bake maps of the surface before simplify or lod; needs atlas.
                                    Size and margin are those of the atlas */
 } cw_pipeline_desc;
 
@@ -127,7 +129,7 @@ typedef struct cw_pipeline_facts {
     double color_low, color_high;   /* the ends of its map */
     cw_quality quality;             /* CW_STAGE_CHECK: of the surface given away last */
     cw_close_handles_facts handles; /* CW_STAGE_HANDLES */
-    cw_atlas_facts atlas;           /* CW_STAGE_ATLAS: of the surface, or of level 0 */
+    cw_atlas_facts atlas;           /* CW_STAGE_ATLAS: of the surface, or of all levels */
     cw_bake_facts baked;            /* CW_STAGE_MAPS: the same */
 } cw_pipeline_facts;
 
@@ -139,7 +141,7 @@ typedef struct cw_pipeline_surface {
     size_t layer;         /* of labels, from 0 */
     uint32_t label;       /* of labels: whose surface it is */
     cw_mesh *full; /* of levels, and with maps: the surface that it was made of; else NULL */
-    /* CW_MAP_COUNT images, of level 0 or of the surface; all levels share them. Those that were not
+    /* CW_MAP_COUNT images, of the surface or of all its levels. Those that were not
      * baked have no pixels. Borrowed until the pipeline ends; NULL: there are none */
     const cw_image *maps;
 } cw_pipeline_surface;
@@ -173,8 +175,8 @@ CW_NODISCARD CW_API cw_status cw_pipeline_check(cw_surface_source source, unsign
  *
  * Where it can, a surface is simplified slab by slab while it is extracted, and is never whole.
  * A simplified surface gets normals of the field, unless it was smoothed or cut, or
- * its handles were closed. With texture coordinates the levels after the first are made from it along
- * its seams, so that its maps are theirs, too.
+ * its handles were closed. Levels of detail share the square of their texture coordinates, each with
+ * half of the texels for a mm of the one before, and so their maps.
  *
  * volume     borrowed; as in cw_extract()
  * extractor  of this volume, for one of several surfaces; NULL: this one by itself
@@ -211,6 +213,22 @@ CW_NODISCARD CW_API cw_status cw_pipeline_run_slices(const cw_slice_source *sour
                                                      const cw_pipeline_desc *desc,
                                                      cw_pipeline_sink sink,
                                                      cw_pipeline_facts *facts, cw_error *err);
+
+/* Runs the stages on a copy of a mesh, in place of the surface of a volume. Stages that need voxels are
+ * refused. A result without normals gets those of the triangles around its vertices, unless
+ * desc->extract.no_normals.
+ *
+ * mesh     borrowed
+ * desc     borrowed; of extract only no_normals, threads and progress count
+ * sink     takes the result
+ * facts    as in cw_pipeline_run(); extracted.triangles are those of the mesh
+ * Returns  CW_ERR_EMPTY  the mesh has no triangles; or as cw_pipeline_check(), as the functions of the
+ *                        stages, and as sink
+ * Threads  reentrant; the same to the bit for any number of threads */
+CW_NODISCARD CW_API cw_status cw_pipeline_run_mesh(const cw_mesh *mesh,
+                                                   const cw_pipeline_desc *desc,
+                                                   cw_pipeline_sink sink,
+                                                   cw_pipeline_facts *facts, cw_error *err);
 
 /* The interfaces of label maps, and the labels whose surfaces are to be finished. */
 typedef struct cw_pipeline_labels {

@@ -147,6 +147,11 @@ typedef struct cw_simplify_facts {
  * that is not its neighbour, unless triangles of the input did. Attributes of vertices and corners are
  * those of the closest point of the input; triangles take those of the triangle closest to their middle.
  *
+ * A mesh with texture coordinates (CW_TEXTURE_COORDINATES) keeps its texture: it still fits. Vertices on
+ * seams move along them, and stay where seams meet or end. Charts keep their triangles on the texture;
+ * none turns over there, and charts that lay apart do not come to overlap. The way of a place on the texture
+ * counts as a distance, which no collapse moves farther than error_mm; cw_mesh_texture_distance() measures it.
+ *
  * With triangles or ratio alone the result may have more triangles than requested. That happens
  * where every edge that is left would break one of these rules.
  *

@@ -14,7 +14,7 @@ threads at once, as long as none writes to its arrays.
 
 from ._about import Feature, Format, features, formats, make
 from ._appearance import Appearance, LookDifference, appearance, appearance_view
-from ._atlas import Atlas, Baked, atlas, bake_normals
+from ._atlas import Atlas, Baked, TextureDistance, atlas, bake_maps, bake_normals, texture_distance
 from ._boolean import Combined, boolean
 from ._check import Check, Verdict, check, report
 from ._color import color_by
@@ -62,12 +62,15 @@ __all__ = [
     "Smoothed",
     "Statistics",
     "Status",
+    "TextureDistance",
     "Verdict",
     "Volume",
     "Written",
     "appearance",
     "appearance_view",
     "atlas",
+    "bake_maps",
+    "bake_maps",
     "bake_normals",
     "boolean",
     "check",
@@ -95,6 +98,7 @@ __all__ = [
     "simplify_levels",
     "smooth",
     "split",
+    "texture_distance",
     "transform",
     "weld",
     "write",

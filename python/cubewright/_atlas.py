@@ -5,17 +5,19 @@ from __future__ import annotations
 from collections.abc import Iterable
 from ctypes import byref
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from . import _declarations as c
+from ._errors import call
 from ._library import lib
-from ._memory import Owner
+from ._memory import unpack
 from ._mesh import Mesh, take_mesh
 from ._options import take_choice, take_count, take_length, take_number, take_threads
 from ._progress import Progress, Reporter
-from ._render import lend_image
+from ._render import copy_image
 
 MAPS = tuple(lib.cw_map_name(n).decode() for n in range(c.cw_map.CW_MAP_COUNT))
 
@@ -97,6 +99,33 @@ def atlas(
 
 
 @dataclass(frozen=True)
+class TextureDistance:
+    """How far a texture moved on a surface, in mm."""
+
+    max_distance: float
+    mean_distance: float  # over the area of the mesh
+    side: float  # what the texture's side measures on the full mesh: n texels have n / side for a mm
+    samples: int
+
+
+def texture_distance(mesh: Mesh, full: Mesh, *, threads: int = 0) -> TextureDistance:
+    """Measures how far the texture of a mesh moved from where it was on another one, such as before simplify():
+    as distances of points in space and texture [Garland1998].
+
+    Raises Error: ARGUMENT without texture coordinates, EMPTY if those of the full mesh cover no area, NO_MEMORY.
+    """
+    low, fine = take_mesh("mesh", mesh), take_mesh("full", full)
+    facts = c.cw_texture_distance()
+    call(lib.cw_mesh_texture_distance, byref(low), byref(fine), take_threads(threads), byref(facts))
+    return TextureDistance(
+        max_distance=facts.max_mm,
+        mean_distance=facts.mean_mm,
+        side=facts.side_mm,
+        samples=facts.samples,
+    )
+
+
+@dataclass(frozen=True)
 class Baked:
     """A normal map, and facts on it. image is (size, size, 4) uint8, top row first; alpha is 255."""
 
@@ -129,22 +158,64 @@ def bake_normals(
     The map is in the tangent space of MikkTSpace, green upward, as glTF has it.
     Raises Error: ARGUMENT, NO_MEMORY, CANCELLED.
     """
+    images, facts = bake_maps(
+        mesh, full, "normals", size=size, margin=margin, reach=reach, threads=threads, progress=progress
+    )
+    return Baked(
+        image=images["normals"],
+        texels=facts["texels"],
+        missed=facts["missed"],
+        max_distance=facts["max_mm"],
+        mean_distance=facts["mean_mm"],
+        mean_angle=facts["mean_deg"],
+    )
+
+
+def bake_maps(
+    mesh: Mesh,
+    full: Mesh,
+    maps: str | Iterable[str],
+    *,
+    size: int = 2048,
+    margin: int = 2,
+    reach: float | str = 0.0,
+    occlusion: float | str = 0.0,
+    thickness: float | str = 0.0,
+    curvature: float = 0.0,
+    threads: int = 0,
+    progress: Progress = None,
+) -> tuple[dict[str, npt.NDArray[Any]], dict[str, Any]]:
+    """Returns maps of a full surface for a mesh from atlas() that has normals, by name, and facts on them.
+
+    maps       names, of "normals", "occlusion", "curvature", "thickness", "colors". Each map is
+               (size, size, 4) uint8, top row first; of occlusion and thickness size is a fourth
+    occlusion  a length: what is farther away darkens nothing; 0: 10 % of the box's diagonal
+    thickness  a length: that is white; 0: the same
+    curvature  1 / mm: a mean curvature that is white, and black inward; 0: 95 % of the vertices have less
+    others     as of bake_normals()
+
+    Occlusion is the share of the sky that is open [Zhukov1998]; grey is no curvature [Meyer2003]; the
+    thickness is a mean over 30 degrees [Shapira2008]; colours are those of the full mesh's vertices.
+    Raises Error: ARGUMENT, NO_MEMORY, CANCELLED.
+    """
     low, fine = take_mesh("mesh", mesh), take_mesh("full", full)
     reporter = Reporter(progress)
     desc = c.cw_bake_desc(
         size=take_count("size", size, 16, 16384),
         margin=take_count("margin", margin, 1, 64),
         reach_mm=take_length("reach", reach, mesh),
+        maps=take_maps(maps),
+        occlusion_mm=take_length("occlusion", occlusion, mesh),
+        thickness_mm=take_length("thickness", thickness, mesh),
+        curvature_max=take_number("curvature", curvature),
         threads=take_threads(threads),
         progress=reporter.struct,
     )
-    image, facts = Owner(c.cw_image(), lib.cw_image_free), c.cw_bake_facts()
-    reporter.call(lib.cw_bake_normals, byref(low), byref(fine), byref(desc), byref(image.struct), byref(facts))
-    return Baked(
-        image=lend_image(image),
-        texels=facts.texels,
-        missed=facts.missed,
-        max_distance=facts.max_mm,
-        mean_distance=facts.mean_mm,
-        mean_angle=facts.mean_deg,
-    )
+    images, facts = (c.cw_image * len(MAPS))(), c.cw_bake_facts()
+    reporter.call(lib.cw_bake_maps, byref(low), byref(fine), byref(desc), images, byref(facts))
+    baked: dict[str, npt.NDArray[Any]] = {}
+    for name, image in zip(MAPS, images):
+        if image.pixels:
+            baked[name] = copy_image(image)
+        lib.cw_image_free(byref(image))
+    return baked, unpack(facts)

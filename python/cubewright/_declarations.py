@@ -55,6 +55,7 @@ CW_FEM_MAX_ASPECT = 10.0
 CW_FEM_MIN_ANGLE_DEG = 10.0
 CW_HANDLE_FRACTION = 0.03
 CW_NEEDLE_RATIO = 20.0
+CW_OCCLUSION_DIVISOR = 4
 CW_PRINT_MAX_MM = 400.0
 CW_PRINT_MIN_MM = 5.0
 CW_SIMPLIFIER_SLAB = 524288
@@ -126,7 +127,11 @@ class cw_interpolation(enum.IntEnum):
 
 class cw_map(enum.IntEnum):
     CW_MAP_NORMALS = 0
-    CW_MAP_COUNT = 1
+    CW_MAP_OCCLUSION = 1
+    CW_MAP_CURVATURE = 2
+    CW_MAP_THICKNESS = 3
+    CW_MAP_COLORS = 4
+    CW_MAP_COUNT = 5
 
 
 class cw_boolean_op(enum.IntEnum):
@@ -262,7 +267,8 @@ class cw_keeps(enum.IntEnum):
     CW_KEEPS_OPACITY = 1024
     CW_KEEPS_TEXTURE = 2048
     CW_KEEPS_PICTURES = 4096
-    CW_KEEPS_ALL = 8191
+    CW_KEEPS_MATERIALS = 8192
+    CW_KEEPS_ALL = 16383
 
 
 class cw_mode(enum.IntEnum):
@@ -371,7 +377,8 @@ class cw_surface_source(enum.IntEnum):
     CW_SOURCE_SLICES = 1
     CW_SOURCE_PARTS = 2
     CW_SOURCE_LABELS = 3
-    CW_SOURCE_COUNT = 4
+    CW_SOURCE_MESH = 4
+    CW_SOURCE_COUNT = 5
 
 
 class cw_slice_filter_kind(enum.IntEnum):
@@ -742,12 +749,14 @@ class cw_image(Structure):
     width: int
     height: int
     pixels: Any
+    deep: Any
 
 
 cw_image._fields_ = [
     ("width", c_size_t),
     ("height", c_size_t),
     ("pixels", POINTER(c_uint8)),
+    ("deep", POINTER(c_uint16)),
 ]
 
 
@@ -778,12 +787,14 @@ class cw_surface_look(Structure):
     mesh: Any
     normal_map: Any
     color_map: Any
+    occlusion_map: Any
 
 
 cw_surface_look._fields_ = [
     ("mesh", POINTER(cw_mesh)),
     ("normal_map", POINTER(cw_image)),
     ("color_map", POINTER(cw_image)),
+    ("occlusion_map", POINTER(cw_image)),
 ]
 
 
@@ -905,6 +916,21 @@ cw_atlas_facts._fields_ = [
 ]
 
 
+class cw_texture_distance(Structure):
+    samples: int
+    max_mm: float
+    mean_mm: float
+    side_mm: float
+
+
+cw_texture_distance._fields_ = [
+    ("samples", c_size_t),
+    ("max_mm", c_double),
+    ("mean_mm", c_double),
+    ("side_mm", c_double),
+]
+
+
 class cw_bake_desc(Structure):
     version: int
     size: int
@@ -913,6 +939,10 @@ class cw_bake_desc(Structure):
     threads: int
     progress: Any
     maps: int
+    occlusion_mm: float
+    thickness_mm: float
+    curvature_max: float
+    deep: bool
 
 
 cw_bake_desc._fields_ = [
@@ -923,6 +953,10 @@ cw_bake_desc._fields_ = [
     ("threads", c_int),
     ("progress", cw_progress),
     ("maps", c_uint),
+    ("occlusion_mm", c_double),
+    ("thickness_mm", c_double),
+    ("curvature_max", c_double),
+    ("deep", c_bool),
 ]
 
 
@@ -933,6 +967,9 @@ class cw_bake_facts(Structure):
     mean_mm: float
     mean_deg: float
     reach_mm: float
+    occlusion_mm: float
+    thickness_mm: float
+    curvature_max: float
 
 
 cw_bake_facts._fields_ = [
@@ -942,6 +979,9 @@ cw_bake_facts._fields_ = [
     ("mean_mm", c_double),
     ("mean_deg", c_double),
     ("reach_mm", c_double),
+    ("occlusion_mm", c_double),
+    ("thickness_mm", c_double),
+    ("curvature_max", c_double),
 ]
 
 
@@ -2162,11 +2202,35 @@ cw_texture._fields_ = [
 class cw_textures(Structure):
     version: int
     normal: Any
+    color: Any
+    metallic_roughness: Any
+    occlusion: Any
+    emissive: Any
+    has_factors: bool
+    color_factor: Any
+    metallic_factor: float
+    roughness_factor: float
+    emissive_factor: Any
+    normal_scale: float
+    occlusion_strength: float
+    repeats: bool
 
 
 cw_textures._fields_ = [
     ("version", c_uint32),
     ("normal", cw_texture),
+    ("color", cw_texture),
+    ("metallic_roughness", cw_texture),
+    ("occlusion", cw_texture),
+    ("emissive", cw_texture),
+    ("has_factors", c_bool),
+    ("color_factor", c_float * 4),
+    ("metallic_factor", c_float),
+    ("roughness_factor", c_float),
+    ("emissive_factor", c_float * 3),
+    ("normal_scale", c_float),
+    ("occlusion_strength", c_float),
+    ("repeats", c_bool),
 ]
 
 
@@ -3717,9 +3781,13 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "cw_appearance_find_view": (c_int, [POINTER(cw_surface_look), c_size_t, c_uint32, c_uint32, POINTER(cw_appearance_view), POINTER(cw_error)]),
     "cw_appearance_draw": (c_int, [POINTER(cw_surface_look), c_size_t, POINTER(cw_camera), POINTER(cw_appearance_desc), POINTER(cw_image), POINTER(cw_error)]),
     "cw_mesh_atlas": (c_int, [POINTER(cw_mesh), POINTER(cw_atlas_desc), POINTER(cw_atlas_facts), POINTER(cw_error)]),
+    "cw_meshes_atlas": (c_int, [POINTER(POINTER(cw_mesh)), POINTER(c_double), c_size_t, POINTER(cw_atlas_desc), POINTER(cw_atlas_facts), POINTER(cw_error)]),
     "cw_mesh_split_seams": (c_int, [POINTER(cw_mesh), POINTER(cw_error)]),
+    "cw_mesh_texture_distance": (c_int, [POINTER(cw_mesh), POINTER(cw_mesh), c_int, POINTER(cw_texture_distance), POINTER(cw_error)]),
     "cw_map_name": (c_char_p, [c_int]),
     "cw_bake_normals": (c_int, [POINTER(cw_mesh), POINTER(cw_mesh), POINTER(cw_bake_desc), POINTER(cw_image), POINTER(cw_bake_facts), POINTER(cw_error)]),
+    "cw_bake_maps": (c_int, [POINTER(cw_mesh), POINTER(cw_mesh), POINTER(cw_bake_desc), POINTER(cw_image), POINTER(cw_bake_facts), POINTER(cw_error)]),
+    "cw_bake_meshes": (c_int, [POINTER(POINTER(cw_mesh)), c_size_t, POINTER(cw_mesh), POINTER(cw_bake_desc), POINTER(cw_image), POINTER(cw_bake_facts), POINTER(cw_error)]),
     "cw_mesh_boolean": (c_int, [POINTER(POINTER(cw_mesh)), c_size_t, POINTER(cw_boolean_desc), POINTER(cw_mesh), POINTER(cw_boolean_facts), POINTER(cw_error)]),
     "cw_distance_to_field": (c_int, [POINTER(cw_mesh), POINTER(cw_volume), POINTER(cw_field_distance_desc), POINTER(cw_distance), POINTER(c_float), POINTER(cw_error)]),
     "cw_distance_to_mesh": (c_int, [POINTER(cw_mesh), POINTER(cw_mesh), POINTER(cw_mesh_distance_desc), POINTER(cw_distance), POINTER(c_float), POINTER(cw_error)]),
@@ -3926,6 +3994,7 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "cw_pipeline_run": (c_int, [POINTER(cw_volume), POINTER(cw_extractor), POINTER(cw_pipeline_desc), cw_pipeline_sink, POINTER(cw_pipeline_facts), POINTER(cw_error)]),
     "cw_pipeline_mesh": (c_int, [POINTER(cw_volume), POINTER(cw_extractor), POINTER(cw_pipeline_desc), POINTER(cw_mesh), POINTER(cw_pipeline_facts), POINTER(cw_error)]),
     "cw_pipeline_run_slices": (c_int, [POINTER(cw_slice_source), POINTER(cw_pipeline_desc), cw_pipeline_sink, POINTER(cw_pipeline_facts), POINTER(cw_error)]),
+    "cw_pipeline_run_mesh": (c_int, [POINTER(cw_mesh), POINTER(cw_pipeline_desc), cw_pipeline_sink, POINTER(cw_pipeline_facts), POINTER(cw_error)]),
     "cw_pipeline_run_labels": (c_int, [POINTER(cw_pipeline_labels), POINTER(cw_pipeline_desc), cw_pipeline_sink, POINTER(cw_pipeline_facts), POINTER(cw_error)]),
     "cw_mesh_remesh": (c_int, [POINTER(cw_mesh), POINTER(cw_remesh_desc), POINTER(cw_mesh), POINTER(cw_remesh_facts), POINTER(cw_error)]),
     "cw_repair_has_cgal": (c_bool, []),

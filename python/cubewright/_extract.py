@@ -211,7 +211,7 @@ def extract_levels(
     """Extracts a surface, and returns levels of detail of it, each made from the one before.
 
     triangles  number of each level, fewer than of the one before
-    maps       maps of the full surface to bake: "normals". They need uv, and all levels share them and the
+    maps       maps of the full surface to bake, as of bake_maps(). They need uv, and all levels share them and the
                texture coordinates. Write each level as Part(name, level, normal_map=levels.maps["normals"])
     reach      a length: how far the full surface may be from the first level; 0: 4 % of the box's diagonal
     options    as of extract(), but simplify. Normals are those of the field
@@ -237,7 +237,8 @@ def extract_levels(
         memset(surface.contents.mesh, 0, sizeof(c.cw_mesh))
         levels.append(mesh)
         for n, name in enumerate(MAPS if wanted and surface.contents.level == 0 else ()):
-            levels.maps[name] = copy_image(surface.contents.maps[n])
+            if surface.contents.maps[n].pixels:
+                levels.maps[name] = copy_image(surface.contents.maps[n])
         return 0
 
     sink = c.cw_pipeline_sink(take=_TAKE(take_level))

@@ -177,13 +177,24 @@ class Part:
     """A mesh of a file with several, under its name. label has the colour that the file states for it.
 
     Other colours are those of mesh.colors and mesh.face_colors. normal_map is (height, width, 4) uint8, as
-    bake_normals() makes it; glTF holds it for a mesh with texture coordinates. It is written, not read.
+    bake_normals() makes it, in place of pictures["normal"]; glTF and OBJ hold it for a mesh with texture
+    coordinates. pictures has the bytes of image files by their use: color, normal, metallic_roughness,
+    occlusion, emissive. They are read and written as they are.
     """
 
     name: str | None
     mesh: Mesh
     label: Label | None = None
     normal_map: npt.NDArray[np.uint8] | None = None
+    pictures: dict[str, bytes] | None = None
+
+
+PICTURES = ("color", "normal", "metallic_roughness", "occlusion", "emissive")
+
+
+def take_pictures(textures: c.cw_textures) -> dict[str, bytes]:
+    found = {use: getattr(textures, use) for use in PICTURES}
+    return {use: string_at(file.bytes, file.size) for use, file in found.items() if file.bytes}
 
 
 def make_mesh_desc(options: dict[str, Any], reporter: Reporter) -> c.cw_mesh_read_desc:
@@ -224,7 +235,7 @@ def read_mesh(
     truncated    take the whole facets of an STL file that breaks off; else it is refused
     Other options are those of read_volume(). Raises the same errors.
 
-    mesh.facts tells the findings of the reader, such as "left_out": "textures" and "not_applied".
+    mesh.facts tells the findings of the reader, such as "left_out": "material groups" and "not_applied".
     """
     options = dict(locals())
     reporter = Reporter(progress)
@@ -274,4 +285,5 @@ def take_part(row: c.cw_part, facts: dict[str, Any]) -> Part:
     mesh = Mesh._from_c(row.mesh[0], owner=row).copy()
     mesh.facts = facts
     name = string_at(row.name).decode("utf-8", "replace") if row.name else None
-    return Part(name, mesh, take_label(row.label[0]) if row.label else None)
+    pictures = take_pictures(row.textures[0]) if row.textures else None
+    return Part(name, mesh, take_label(row.label[0]) if row.label else None, pictures=pictures)

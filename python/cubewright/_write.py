@@ -16,7 +16,7 @@ from ._library import lib
 from ._mesh import Mesh, take_mesh
 from ._options import take_choice, take_count, take_flag, take_length, take_path, take_text
 from ._progress import Progress, Reporter
-from ._read import UNITS, Part, Path
+from ._read import PICTURES, UNITS, Part, Path
 from ._render import borrow_image
 from ._volume import Volume
 
@@ -91,7 +91,7 @@ def write(
     effort      effort of Draco, 1 to 10; 0: 7
 
     Of mesh.attributes glTF and OBJ hold texture_coordinates, and some formats face_colors; others are left
-    out. A Part may have a normal_map, for glTF.
+    out. A Part may have a normal_map and pictures, for glTF and OBJ.
 
     Raises Error: ARGUMENT, OUTPUT, UNSUPPORTED, LIMIT, CHECK, NO_MEMORY, CANCELLED.
     """
@@ -124,8 +124,11 @@ def fill_part(part: c.cw_part, given: Part) -> None:
         raise TypeError(f"a list of Part can be written, not of {type(given).__name__}")
     part.mesh = pointer(take_mesh(f"the mesh of part {given.name!r}", given.mesh))
     part.name = take_text("a part's name", given.name)
+    files = {use: borrow_bytes(use, data) for use, data in (given.pictures or {}).items()}
     if given.normal_map is not None:
-        part.textures = pointer(c.cw_textures(normal=encode_picture(given.normal_map)))
+        files["normal"] = encode_picture(given.normal_map)
+    if files:
+        part.textures = pointer(c.cw_textures(**files))
     if given.label is None:
         return
     label = c.cw_label(value=given.label.value, layer=given.label.layer)
@@ -136,6 +139,14 @@ def fill_part(part: c.cw_part, given: Part) -> None:
         label.has_color = True
         label.color[:] = given.label.color
     part.label = pointer(label)
+
+
+def borrow_bytes(use: str, data: bytes) -> c.cw_texture:
+    """Lends the bytes of an image file."""
+    if use not in PICTURES:
+        raise ValueError(f"a picture of {use!r}: expected one of {', '.join(PICTURES)}")
+    kept = create_string_buffer(bytes(data), len(data))
+    return c.cw_texture(bytes=cast(kept, POINTER(c_uint8)), size=len(data))
 
 
 def encode_picture(picture: npt.NDArray[np.uint8]) -> c.cw_texture:

@@ -70,36 +70,61 @@ void cwi_texels_find(const cw_mesh *mesh, uint32_t size, uint32_t *triangle)
 
 /* Gives a texel the mean of those around it that an earlier step filled; false where there are none. */
 static bool fill_texel(const uint8_t *step, uint32_t size, uint32_t x, uint32_t y, uint8_t now,
-                       uint8_t *pixels)
+                       const uint16_t *from, uint16_t *to)
 {
-    unsigned sum[4] = {0}, count = 0;
+    unsigned sum[3] = {0}, count = 0;
     for (uint32_t j = y ? y - 1 : 0; j <= y + 1 && j < size; j++)
         for (uint32_t i = x ? x - 1 : 0; i <= x + 1 && i < size; i++) {
             const size_t at = (size_t)j * size + i;
-            for (size_t k = 0; step[at] < now && k < 4; k++)
-                sum[k] += pixels[4 * at + k];
+            for (size_t k = 0; step[at] < now && k < 3; k++)
+                sum[k] += from[3 * at + k];
             count += step[at] < now;
         }
-    for (size_t k = 0; count && k < 4; k++)
-        pixels[4 * ((size_t)y * size + x) + k] = (uint8_t)((sum[k] + count / 2) / count);
+    for (size_t k = 0; count && k < 3; k++)
+        to[3 * ((size_t)y * size + x) + k] = (uint16_t)((sum[k] + count / 2) / count);
     return count;
 }
 
-cw_status cwi_texels_spread(const uint32_t *triangle, uint32_t size, uint32_t steps,
-                            uint8_t *pixels, cw_error *err)
+/* Marks the texels of triangles as filled. Returns NULL without memory. */
+static uint8_t *mark_filled(const uint32_t *triangle, uint32_t size)
 {
     const size_t count = (size_t)size * size;
-    uint8_t *step = cwi_alloc_array(count, 1); /* in which a texel was filled */
+    uint8_t *step = cwi_alloc_array(count, 1);
+    for (size_t n = 0; n < count && step; n++)
+        step[n] = triangle[n] == CWI_NO_TEXEL ? UNKNOWN : FILLED;
+    return step;
+}
+
+cw_status cwi_texels_spread(const uint32_t *triangle, uint32_t size, uint32_t steps,
+                            uint16_t *texels, cw_error *err)
+{
+    uint8_t *step = mark_filled(triangle, size); /* in which a texel was filled */
     if (!step)
         return cwi_fail_memory(err);
-    for (size_t n = 0; n < count; n++)
-        step[n] = triangle[n] == CWI_NO_TEXEL ? UNKNOWN : FILLED;
     for (uint32_t now = 1; now <= steps; now++)
         for (uint32_t y = 0; y < size; y++)
             for (uint32_t x = 0; x < size; x++)
                 if (step[(size_t)y * size + x] == UNKNOWN &&
-                    fill_texel(step, size, x, y, (uint8_t)now, pixels))
+                    fill_texel(step, size, x, y, (uint8_t)now, texels, texels))
                     step[(size_t)y * size + x] = (uint8_t)now;
     cwi_free(step);
     return CW_OK;
+}
+
+cw_status cwi_texels_smooth(const uint32_t *triangle, uint32_t size, uint16_t *texels,
+                            cw_error *err)
+{
+    const size_t count = (size_t)size * size;
+    uint8_t *step = mark_filled(triangle, size);
+    uint16_t *before = cwi_alloc_array(count, 3 * sizeof *before);
+    const bool has_memory = step && before;
+    if (has_memory)
+        memcpy(before, texels, 3 * count * sizeof *before);
+    for (uint32_t y = 0; y < size && has_memory; y++)
+        for (uint32_t x = 0; x < size; x++)
+            if (step[(size_t)y * size + x] == FILLED)
+                fill_texel(step, size, x, y, 1, before, texels);
+    cwi_free(step);
+    cwi_free(before);
+    return has_memory ? CW_OK : cwi_fail_memory(err);
 }

@@ -18,8 +18,12 @@ void cwi_texel_weights(const float *uv, const uint32_t v[3], uint32_t size, uint
 /* Gives texels beside filled ones the mean of these, step by step. Returns CW_ERR_NO_MEMORY.
  * triangle  as above
  * steps     texels, at most 254
- * pixels    size x size x 4 */
+ * texels    size x size x 3 */
 CW_NODISCARD cw_status cwi_texels_spread(const uint32_t *triangle, uint32_t size,
-                                         uint32_t steps, uint8_t *pixels, cw_error *err);
+                                         uint32_t steps, uint16_t *texels, cw_error *err);
+
+/* Gives filled texels the mean of the filled ones among the nine around each. Returns CW_ERR_NO_MEMORY. */
+CW_NODISCARD cw_status cwi_texels_smooth(const uint32_t *triangle, uint32_t size,
+                                         uint16_t *texels, cw_error *err);
 
 #endif

@@ -458,15 +458,38 @@ static cw_status collapse_to_target(block_batch *c, cw_error *err)
     return st == CW_OK ? for_each_block(c, copy_out_block, err) : st;
 }
 
-/* Seams between blocks stay as fine as they were: that many triangles more than the target are
- * left to the second pass. */
-static size_t first_target(const block_batch *c, size_t target)
+/* Counts the vertices of a block that are not held, but whose corners differ in the texture. */
+static cw_status count_textured_seams(const cwi_mesh_block *b, size_t *count, cw_error *err)
 {
-    size_t locked = 0;
-    for (size_t n = 0; n < c->count; n++)
+    const float **first = b->texture ? cwi_alloc_zeroed(b->vertices, sizeof *first) : NULL;
+    uint8_t *differs = b->texture ? cwi_alloc_zeroed(b->vertices, 1) : NULL;
+    cw_status st = !b->texture || (first && differs) ? CW_OK : cwi_fail_memory(err);
+    for (size_t c = 0; c < 3 * b->interior_count && b->texture && st == CW_OK; c++) {
+        const size_t v = b->corners[c];
+        const float *uv = b->texture + 2 * c;
+        if (!first[v])
+            first[v] = uv;
+        if (!differs[v] && !b->locked[v] && (uv[0] != first[v][0] || uv[1] != first[v][1]))
+            ++*count, differs[v] = 1;
+    }
+    cwi_free(first);
+    cwi_free(differs);
+    return st;
+}
+
+/* Seams between blocks, and those of a texture, stay as fine as they were: that many triangles more than
+ * the target are left to the second pass. */
+static cw_status find_first_target(block_batch *c, size_t target, cw_error *err)
+{
+    size_t held = 0;
+    cw_status st = CW_OK;
+    for (size_t n = 0; n < c->count && target && st == CW_OK; n++) {
         for (size_t v = 0; v < c->blocks[n].vertices; v++)
-            locked += c->blocks[n].locked[v];
-    return target ? target + 3 * locked / 2 : 0;
+            held += c->blocks[n].locked[v];
+        st = count_textured_seams(c->blocks + n, &held, err);
+    }
+    c->target = target ? target + 3 * held / 2 : 0;
+    return st;
 }
 
 static cw_status simplify_batch(block_batch *c, cw_error *err)
@@ -524,13 +547,14 @@ static cw_status simplify_in_blocks(const cwi_passes *p, cwi_mesh_block *whole, 
     cw_status st = cwi_blocks_cut(whole, CWI_BLOCK, cut_fraction, &c.blocks, &c.count, err);
     if (st != CW_OK)
         return st;
-    c.target = first_target(&c, target);
+    st = find_first_target(&c, target, err);
     uint8_t *seam = whole->seam;
     if (out == whole) {
         whole->seam = NULL;
         cwi_block_free(whole);
     }
-    st = simplify_batch(&c, err);
+    if (st == CW_OK)
+        st = simplify_batch(&c, err);
     for (size_t n = 0; n < c.count && st == CW_OK; n++)
         max_repeats = c.repeats[n] > max_repeats ? c.repeats[n] : max_repeats;
     *repeats += max_repeats;

@@ -49,6 +49,7 @@ void cwi_block_free(cwi_mesh_block *block)
     cwi_free(block->areas);
     cwi_free(block->gradients);
     cwi_free(block->nearest_points);
+    cwi_free(block->texture);
     *block = (cwi_mesh_block){0};
 }
 
@@ -325,11 +326,13 @@ static bool alloc_gradients(const cwi_mesh_block *whole, cwi_mesh_block *b)
 /* For vertices that have names. */
 static bool fill_values(const cwi_mesh_block *whole, cwi_mesh_block *b)
 {
-    const size_t count = b->attributes = whole->attributes;
+    const size_t count = whole->attributes - (whole->texture ? CWI_TEXTURE_ATTRIBUTES : 0);
+    b->attributes = whole->attributes;
+    b->texture_scale = whole->texture_scale;
+    if (whole->attributes && whole->gradients)
+        return alloc_gradients(whole, b);
     if (!count)
         return true;
-    if (whole->gradients)
-        return alloc_gradients(whole, b);
     b->values = cwi_alloc_array(count * b->vertices, sizeof *b->values);
     for (size_t v = 0; v < b->vertices && b->values; v++)
         memcpy(b->values + count * v, whole->values + count * b->global_ids[v],
@@ -337,7 +340,9 @@ static bool fill_values(const cwi_mesh_block *whole, cwi_mesh_block *b)
     return b->values;
 }
 
-/* Numbers the vertices of leaf n as they come; *place must be NOT_THERE everywhere, and is so
+/* Seams of a texture stay as they are in blocks, where not all of the texture is known.
+ *
+ * Numbers the vertices of leaf n as they come; *place must be NOT_THERE everywhere, and is so
  * again. */
 static cw_status fill_block(const plan *p, size_t n, uint32_t *index_of, cwi_mesh_block *b,
                             cw_error *err)
@@ -354,7 +359,11 @@ static cw_status fill_block(const plan *p, size_t n, uint32_t *index_of, cwi_mes
     b->global_ids = cwi_alloc_array(3 * b->triangles, sizeof *b->global_ids);
     if (w->nearest_points)
         b->nearest_points = cwi_alloc_array(b->interior_count, sizeof *b->nearest_points);
-    if (!b->corners || !b->global_ids || !b->nearest_points != !w->nearest_points)
+    if (w->texture)
+        b->texture = cwi_alloc_array(6 * b->interior_count, sizeof *b->texture);
+    b->holds_seams = true;
+    if (!b->corners || !b->global_ids || !b->nearest_points != !w->nearest_points ||
+        !b->texture != !w->texture)
         return cwi_fail_memory(err);
     size_t interior = 0; /* vertices of own triangles come first */
     for (size_t i = 0; i < b->triangles; i++) {
@@ -370,6 +379,9 @@ static cw_status fill_block(const plan *p, size_t n, uint32_t *index_of, cwi_mes
     }
     for (size_t i = 0; i < b->interior_count && w->nearest_points; i++)
         b->nearest_points[i] = w->nearest_points[triangle_of(p, n, i)];
+    for (size_t i = 0; i < b->interior_count && w->texture; i++)
+        memcpy(b->texture + 6 * i, w->texture + 6 * (size_t)triangle_of(p, n, i),
+               6 * sizeof *b->texture);
     const bool ok = alloc_vertices(b, w) && fill_values(w, b);
     for (size_t v = 0; v < b->vertices; v++) {
         if (ok)
@@ -488,7 +500,10 @@ static bool alloc_joined(const cwi_mesh_block *blocks, size_t count, cwi_mesh_bl
     whole->corners = cwi_alloc_array(3 * triangles, sizeof *whole->corners);
     if (count && blocks[0].nearest_points)
         whole->nearest_points = cwi_alloc_array(triangles, sizeof *whole->nearest_points);
+    if (count && blocks[0].texture)
+        whole->texture = cwi_alloc_array(6 * triangles, sizeof *whole->texture);
     whole->attributes = count ? blocks[0].attributes : 0;
+    whole->texture_scale = count ? blocks[0].texture_scale : 0;
     if (whole->attributes) {
         whole->areas = cwi_alloc_array(vertices, sizeof *whole->areas);
         whole->gradients =
@@ -498,7 +513,8 @@ static bool alloc_joined(const cwi_mesh_block *blocks, size_t count, cwi_mesh_bl
     }
     return whole->points && whole->global_ids && whole->seam && whole->open &&
            whole->quadrics && whole->corners &&
-           (!count || !blocks[0].nearest_points || whole->nearest_points);
+           (!count || !blocks[0].nearest_points || whole->nearest_points) &&
+           (!count || !blocks[0].texture || whole->texture);
 }
 
 cw_status cwi_blocks_join(const cwi_mesh_block *blocks, size_t count, size_t id_count,
@@ -521,6 +537,9 @@ cw_status cwi_blocks_join(const cwi_mesh_block *blocks, size_t count, size_t id_
         if (whole->nearest_points)
             memcpy(whole->nearest_points + whole->triangles, b->nearest_points,
                    b->triangles * sizeof *b->nearest_points);
+        if (whole->texture)
+            memcpy(whole->texture + 6 * whole->triangles, b->texture,
+                   6 * b->triangles * sizeof *b->texture);
         whole->triangles += b->triangles;
     }
     cwi_block_span(whole);

@@ -48,9 +48,13 @@ public:
         return &all[vertex * count];
     }
 
-    // Adds a triangle, by the sides from its first corner. Slivers have no gradients.
+    // Values of a triangle's corners.
+    using Values = float[3][CWI_MAX_ATTRIBUTES];
+
+    // Adds a triangle, by the sides from its first corner. Slivers have no gradients, and vertices for
+    // which quadric_of is NULL get none.
     template <typename Quadric>
-    void add_face(const size_t corner[3], const Vec &ab, const Vec &ac, const float *values,
+    void add_face(const size_t corner[3], const Vec &ab, const Vec &ac, const Values &values,
                   Quadric &&quadric_of)
     {
         const Vec normal = ab % ac, to_b = ac % normal, to_c = normal % ab;
@@ -60,18 +64,19 @@ public:
         if (!(normal_sq > 1e-7f * longest * longest))
             return;
         for (size_t k = 0; k < count; k++) {
-            const float a = values[corner[0] * count + k];
-            const Vec slope = ((values[corner[1] * count + k] - a) * to_b +
-                               (values[corner[2] * count + k] - a) * to_c) /
-                              normal_sq;
+            const float a = values[0][k];
+            const Vec slope =
+                ((values[1][k] - a) * to_b + (values[2][k] - a) * to_c) / normal_sq;
             std::copy_n(slope.data(), 3, joined[k].slope);
         }
         for (size_t i = 0; i < 3; i++) {
+            cwi_quadric *quadric = quadric_of(corner[i]);
+            if (!quadric)
+                continue;
             for (size_t k = 0; k < count; k++)
-                joined[k].value = values[corner[i] * count + k];
-            cwi_attribute_gradients_join(&quadric_of(corner[i]), &areas[corner[i]],
-                                         &all[corner[i] * count], 0.5f * std::sqrt(normal_sq),
-                                         joined, count);
+                joined[k].value = values[i][k];
+            cwi_attribute_gradients_join(quadric, &areas[corner[i]], &all[corner[i] * count],
+                                         0.5f * std::sqrt(normal_sq), joined, count);
         }
     }
 
@@ -83,6 +88,24 @@ public:
         std::copy_n(of(other), count, joined);
         move(-displacement);
         cwi_attribute_gradients_join(&quadric, &joined_area, joined, areas[at], of(at), count);
+    }
+
+    // Drops what was joined at a vertex.
+    void drop(size_t vertex)
+    {
+        areas[vertex] = 0;
+    }
+
+    // The loss where the last attributes of a vertex become other values at a displacement from it.
+    float loss(size_t vertex, const Vec &displacement, const float *values, size_t last) const
+    {
+        float sum = 0;
+        for (size_t k = 0; k < last; k++) {
+            const cwi_attribute_gradient &g = of(vertex)[count - last + k];
+            const float difference = g.value + (Vec(g.slope) | displacement) - values[k];
+            sum += difference * difference;
+        }
+        return areas[vertex] * sum;
     }
 
     // Stores what was joined at a vertex, `displacement` from where that was.

@@ -10,6 +10,7 @@
 #include "simplify/collapse/edge_heap.hpp"
 #include "simplify/collapse/halfedge_mesh.hpp"
 #include "simplify/collapse/small_shells.hpp"
+#include "simplify/collapse/texture_charts.hpp"
 
 #include <cmath>
 #include <memory>
@@ -21,7 +22,7 @@ namespace
 
 // Bytes that a triangle takes here, with its share of vertices, edges and the data kept for
 // them.
-enum { TRIANGLE_BYTES = 240 };
+enum { TRIANGLE_BYTES = 240, TEXTURE_BYTES = 48 };
 
 // All that a cost needs of a vertex, in one line of a cache.
 struct alignas(64) Node {
@@ -38,14 +39,16 @@ struct alignas(64) Node {
 struct cwi_decimater {
     cwi_decimater(const cwi_mesh_block &block, const cwi_block_desc &desc,
                   const cwi_original *original)
-        : taken(TRIANGLE_BYTES * block.triangles),
+        : taken((TRIANGLE_BYTES + (block.texture ? TEXTURE_BYTES : 0)) * block.triangles),
           global_ids(block.global_ids, block.global_ids + block.vertices),
-          nodes(block.vertices), gradients(block), live(block.interior_count), shape(block),
-          shells(block), bound(block, original, desc.error), progress(*desc.progress)
+          nodes(block.vertices), gradients(block), texture_scale(block.texture_scale),
+          live(block.interior_count), shape(block), shells(block),
+          bound(block, original, desc.error), progress(*desc.progress)
     {
         poll();
         const std::vector<uint8_t> unsound = connect(block, surface);
         poll();
+        charts = std::make_unique<TextureCharts>(block, surface, desc.error);
         if (!desc.allow_crossings)
             contact = std::make_unique<Contact>(block, surface);
         for (size_t v = 0; v < block.vertices; v++) {
@@ -60,8 +63,9 @@ struct cwi_decimater {
         }
         add_quadrics(block);
         fill_queue();
-        for (Node &n : nodes)
-            n.open = n.locked;
+        for (size_t v = 0; v < nodes.size(); v++)
+            nodes[v].open =
+                nodes[v].locked || (block.holds_seams && charts->is_on_seam(uint32_t(v)));
     }
 
     void run(float max_cost, size_t min_triangles)
@@ -94,6 +98,7 @@ struct cwi_decimater {
     std::vector<uint32_t> global_ids;
     std::vector<Node> nodes;
     AttributeGradients gradients;
+    float texture_scale;
     size_t nonmanifold_count = 0;
     Queue queue;
     std::vector<uint32_t> looked_at; // edges: when their cost was
@@ -104,6 +109,7 @@ struct cwi_decimater {
     SmallShells shells;
     Bound bound;
     std::unique_ptr<Contact> contact;
+    std::unique_ptr<TextureCharts> charts;
     OneRing ring;
 
 private:
@@ -128,7 +134,7 @@ private:
         HalfedgeHandle halfedge; // from the vertex that goes to the one that stays
         cwi_quadric quadric;     // about where the halfedge starts
         Vec position;
-        float cost;
+        float cost;       // infinite where the texture forbids it
         uint32_t changed; // the later of the two vertices
     };
 
@@ -151,8 +157,25 @@ private:
                    : std::sqrt(area) * std::sqrt(std::sqrt(std::sqrt(area)));
     }
 
-    void add_face(FaceHandle f, const float *values)
+    // Collects the attributes of a triangle's corners, measured as lengths.
+    void collect_values(const cwi_mesh_block &block, FaceHandle f, const size_t corner[3],
+                        AttributeGradients::Values &values) const
     {
+        const size_t texture = block.texture ? CWI_TEXTURE_ATTRIBUTES : 0,
+                     count = block.attributes - texture;
+        for (size_t i = 0; i < 3; i++) {
+            for (size_t k = 0; k < count; k++)
+                values[i][k] = block.values[corner[i] * count + k];
+            for (size_t k = 0; k < texture; k++)
+                values[i][count + k] =
+                    texture_scale * charts->at(uint32_t(f.idx()), uint32_t(corner[i]))[k];
+        }
+    }
+
+    // Adds planes and gradients. On seams a texture is no linear function of place.
+    void add_face(const cwi_mesh_block &block, FaceHandle f)
+    {
+        AttributeGradients::Values values;
         size_t corner[3], n = 0;
         for (auto it = surface.cfv_iter(f); it.is_valid(); ++it)
             corner[n++] = size_t(it->idx());
@@ -164,12 +187,15 @@ private:
             normal /= length;
         for (size_t v : corner)
             add_plane(nodes[v].quadric, normal, weight_of(length / 2));
-        if (gradients.is_requested())
-            gradients.add_face(corner, ab, ac, values,
-                               [&](size_t v) -> cwi_quadric & { return nodes[v].quadric; });
+        if (!gradients.is_requested())
+            return;
+        collect_values(block, f, corner, values);
+        gradients.add_face(corner, ab, ac, values, [&](size_t v) {
+            return charts->is_on_seam(uint32_t(v)) ? nullptr : &nodes[v].quadric;
+        });
     }
 
-    // The plane through an edge of the border, square to its triangle.
+    // The plane through an edge of the border or along a seam, square to its triangle.
     void add_border(HalfedgeHandle h)
     {
         const HalfedgeHandle inner = surface.opposite_halfedge_handle(h);
@@ -183,8 +209,9 @@ private:
         if (!(length > 0))
             return;
         normal /= length;
-        add_plane(quadric(a), normal, weight_of(along.sqrnorm()));
-        add_plane(quadric(b), normal, weight_of(along.sqrnorm()));
+        const float weight = (surface.is_boundary(h) ? 1 : 0.5f) * weight_of(along.sqrnorm());
+        add_plane(quadric(a), normal, weight);
+        add_plane(quadric(b), normal, weight);
     }
 
     // Between two vertices held for a seam no border is known; it is when one is released.
@@ -196,12 +223,13 @@ private:
         else
             for (auto f : surface.faces()) {
                 poll_often();
-                add_face(f, block.values);
+                add_face(block, f);
             }
         for (int i = 0; i < int(surface.n_halfedges()); i++) {
             const HalfedgeHandle h(i);
             poll_often();
-            if (!surface.is_boundary(h))
+            if (!surface.is_boundary(h) &&
+                !(charts->is_requested() && charts->is_seam(surface, h)))
                 continue;
             const auto a = size_t(surface.from_vertex_handle(h).idx()),
                        b = size_t(surface.to_vertex_handle(h).idx());
@@ -231,7 +259,18 @@ private:
         queue.build();
     }
 
-    // A vertex of the border moves along it only, with another one.
+    // A vertex of the border moves along it only, with another one; one on a seam of the texture, too.
+    TextureCharts::Target target_of(HalfedgeHandle h)
+    {
+        if (charts->is_requested())
+            return charts->target(surface, h);
+        const Node &u = node(surface.from_vertex_handle(h)),
+                   &v = node(surface.to_vertex_handle(h));
+        return u.border == v.border ? TextureCharts::ANYWHERE
+               : u.border           ? TextureCharts::AT_START
+                                    : TextureCharts::AT_END;
+    }
+
     Proposal propose(EdgeHandle e)
     {
         Proposal p;
@@ -243,13 +282,35 @@ private:
         cwi_quadric_add(&p.quadric, &u.quadric);
         if (gradients.is_requested())
             join_gradients(p.halfedge, p.quadric);
-        const Vec d = u.border == v.border ? minimizer(p.quadric, 0.5f * displacement)
-                      : u.border           ? Vec(0)
-                                           : displacement;
+        const TextureCharts::Target target = target_of(p.halfedge);
+        if (charts->is_requested())
+            p.quadric.c += texture_loss(p.halfedge, target);
+        const Vec d = target == TextureCharts::ANYWHERE
+                          ? minimizer(p.quadric, 0.5f * displacement)
+                      : target == TextureCharts::AT_START ? Vec(0)
+                                                          : displacement;
         p.position = u.point + d;
-        p.cost = error_at(p.quadric, d) + 1e-5f * trace(p.quadric) * displacement.sqrnorm();
+        p.cost =
+            target == TextureCharts::NOWHERE
+                ? INFINITY
+                : error_at(p.quadric, d) + 1e-5f * trace(p.quadric) * displacement.sqrnorm();
         p.changed = std::max(u.changed, v.changed);
         return p;
+    }
+
+    // Computes the loss of a vertex inside a chart that goes to a seam.
+    float texture_loss(HalfedgeHandle h, TextureCharts::Target target)
+    {
+        if (target == TextureCharts::AT_START)
+            h = surface.opposite_halfedge_handle(h);
+        const VertexHandle u = surface.from_vertex_handle(h), v = surface.to_vertex_handle(h);
+        if (target == TextureCharts::ANYWHERE || charts->is_on_seam(uint32_t(u.idx())))
+            return 0;
+        const Place &place =
+            charts->at(uint32_t(surface.face_handle(h).idx()), uint32_t(v.idx()));
+        const float values[2] = {texture_scale * place[0], texture_scale * place[1]};
+        return gradients.loss(size_t(u.idx()), node(v).point - node(u).point, values,
+                              CWI_TEXTURE_ATTRIBUTES);
     }
 
     void join_gradients(HalfedgeHandle h, cwi_quadric &quadric)
@@ -272,6 +333,8 @@ private:
         const VertexHandle kept = surface.to_vertex_handle(p.halfedge);
         const Node &gone = node(surface.from_vertex_handle(p.halfedge));
         Node &stays = node(kept);
+        if (std::isinf(p.cost))
+            return;
         if (!shape.is_inside(p.position)) {
             stays.open = true;
             return;
@@ -282,6 +345,7 @@ private:
         }
         if (!surface.is_collapse_ok(p.halfedge) ||
             !ring.gather(surface, p.halfedge, p.position) || !shape.is_kept(ring) ||
+            (charts->is_requested() && !charts->is_kept(surface, p.halfedge, ring)) ||
             shells.turns(surface, ring, &stays.open) || !bound.is_kept(surface, ring) ||
             shells.sweeps(surface, ring) || (contact && contact->arises(surface, ring)))
             return;
@@ -289,9 +353,13 @@ private:
         shells.change(ring);
         if (gradients.is_requested())
             store_gradients(p);
+        if (charts->is_requested() && target_of(p.halfedge) != TextureCharts::ANYWHERE)
+            gradients.drop(size_t(kept.idx()));
         const VertexHandle sides[2] = {
             vertex_across(p.halfedge),
             vertex_across(surface.opposite_halfedge_handle(p.halfedge))};
+        if (charts->is_requested())
+            charts->change(surface, p.halfedge, ring);
         surface.set_point(kept, p.position);
         surface.collapse(p.halfedge);
         if (contact)
@@ -442,12 +510,18 @@ void take_triangles(const cwi_decimater &d, cwi_mesh_block &out,
     out.corners = array<uint32_t>(3 * d.live);
     if (d.bound.is_requested())
         out.nearest_points = array<uint32_t>(d.live);
+    if (d.charts->is_requested())
+        out.texture = array<float>(6 * d.live);
     for (const auto f : d.surface.faces()) {
         if (f.deleted())
             continue;
-        uint32_t *corner = out.corners + 3 * out.triangles;
-        for (const auto v : f.vertices())
-            *corner++ = numbers[size_t(v.idx())];
+        size_t corner = 3 * out.triangles;
+        for (const auto v : f.vertices()) {
+            if (out.texture)
+                std::copy_n(d.charts->at(uint32_t(f.idx()), uint32_t(v.idx())).data(), 2,
+                            out.texture + 2 * corner);
+            out.corners[corner++] = numbers[size_t(v.idx())];
+        }
         if (out.nearest_points)
             out.nearest_points[out.triangles] = d.bound.list(uint32_t(f.idx()));
         out.triangles++;
@@ -459,6 +533,7 @@ cw_status take(const cwi_decimater *decimater, cwi_mesh_block *out, cw_error *er
 {
     *out = cwi_mesh_block{};
     out->nonmanifold_count = decimater->nonmanifold_count;
+    out->texture_scale = decimater->texture_scale;
     return guard(err, "OpenMesh", [&] {
         std::vector<uint32_t> numbers;
         take_vertices(*decimater, *out, numbers);

@@ -34,7 +34,7 @@ typedef struct cwi_attribute_gradient {
     float slope[3], value;
 } cwi_attribute_gradient;
 
-enum { CWI_MAX_ATTRIBUTES = 8 };
+enum { CWI_MAX_ATTRIBUTES = 10, CWI_TEXTURE_ATTRIBUTES = 2 };
 
 /* Replaces the means of `count` gradients over an area by those over two areas, about the same
  * position. Adds their squared differences times area to the quadric. */
@@ -93,10 +93,15 @@ typedef struct cwi_mesh_block {
     uint8_t *open;         /* vertices: edges at them are to be tried; the others were tried
                               before. NULL: all are */
     cwi_quadric *quadrics; /* vertices; NULL: from the triangles */
-    size_t attributes;     /* that count; 0: the next three are NULL */
-    float *values;         /* vertices x attributes; NULL where there are gradients */
-    float *areas;          /* vertices: of the triangles whose mean the gradients are */
+    size_t
+        attributes; /* that count; 0: the next three are NULL. Texture coordinates come last */
+    float *values;  /* vertices x attributes, but for texture coordinates; NULL where there are
+                              gradients */
+    float *areas;   /* vertices: of the triangles whose mean the gradients are */
     cwi_attribute_gradient *gradients; /* vertices x attributes; NULL: from the triangles */
+    float *texture;      /* own triangles x 3 x 2: texture coordinates of corners; NULL: none */
+    float texture_scale; /* the length that the side of the texture has on the surface */
+    bool holds_seams;    /* seams of the texture stay as they are */
     uint32_t *nearest_points; /* own: first point of a list; NULL without an original */
     size_t
         nonmanifold_count; /* vertices that were no single fan, or at an edge of more than two */

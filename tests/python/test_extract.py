@@ -99,6 +99,17 @@ class Surfaces(Case):
         self.assertEqual(levels[0].facts["atlas"]["size"], 256)
         for level in levels:
             self.assertEqual(level.attributes["texture_coordinates"].shape, (3 * len(level.triangles), 2))
+        full = cw.extract(head, 300, largest=1)
+        low = cw.atlas(levels[0], size=256).mesh
+        maps, facts = cw.bake_maps(low, full, ["occlusion", "curvature"], size=256, threads=2)
+        self.assertEqual(sorted(maps), ["curvature", "occlusion"])
+        self.assertEqual(maps["occlusion"].shape, (64, 64, 4))
+        self.assertGreater(facts["curvature_max"], 0)
+        with self.assertRaises(cw.Error):
+            cw.bake_maps(low, full, "colors")
+        painted = cw.extract_levels(head, 300, [2000], uv={"size": 128}, maps="colors", color_by=head)
+        self.assertIsNone(painted[0].colors)
+        self.assertGreater(len(np.unique(painted.maps["colors"][..., 0])), 3)
         flat = cw.extract(head, 300, largest=1, uv=True)
         self.assertIn("texture_coordinates", flat.attributes)
 

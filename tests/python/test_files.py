@@ -91,11 +91,11 @@ class Meshes(Case):
             mesh.face_colors = colors / 255
 
     def test_facts_of_files(self):
-        (self.folder / "a.mtl").write_text("newmtl wood\nmap_Kd wood.png\n")
+        (self.folder / "a.mtl").write_text("newmtl wood\nmap_Ks wood.png\n")
         text = "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl wood\nf 1 2 3\n"
         (self.folder / "a.obj").write_text(text)
         facts = cw.read_mesh(self.folder / "a.obj").facts
-        self.assertEqual((facts["format"], facts["left_out"], facts["not_applied"]), ("obj", "textures", ""))
+        self.assertEqual((facts["format"], facts["left_out"], facts["not_applied"]), ("obj", "other pictures of materials", ""))
         self.assertEqual((facts["parts"], facts["truncated"]), (1, False))
         (self.folder / "b.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nf 1 2 4 3\nl 1 2\n")
         facts = cw.read_parts(self.folder / "b.obj")[0].mesh.facts

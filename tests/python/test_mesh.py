@@ -184,6 +184,20 @@ class Coordinates(Case):
         with self.fails(cw.Status.CANCELLED):
             cw.atlas(ball, progress=lambda *_: False)
 
+    def test_simplified_meshes_keep_their_texture(self):
+        full = cw.atlas(cw.extract(make_ball(), 0), size=256).mesh
+        try:
+            low = cw.simplify(full, ratio=0.5)
+        except cw.Error as error:
+            self.assertEqual(error.status, cw.Status.UNSUPPORTED)
+            return
+        moved = cw.texture_distance(low, full, threads=2)
+        self.assertTrue(0 < moved.mean_distance < moved.max_distance < 2)
+        self.assertGreater(moved.side, 1)
+        self.assertGreater(moved.samples, 3 * len(low.triangles))
+        with self.fails(cw.Status.ARGUMENT):
+            cw.texture_distance(low, cw.extract(make_ball(), 0))
+
     def test_normal_maps_are_baked_and_written(self):
         low = cw.atlas(cw.extract(make_ball(), 0), size=256).mesh
         self.assertIsNotNone(low.normals)
@@ -201,6 +215,12 @@ class Coordinates(Case):
                 data = path.read_bytes()
                 self.assertIn(b'"normalTexture"', data)
                 self.assertIn(b"\x89PNG", data)
+                cw.write(path, [cw.Part("low", low, pictures={"color": b"\xff\xd8 jpeg"})])
+                part = cw.read_parts(path)[0]
+                self.assertEqual(part.pictures, {"color": b"\xff\xd8 jpeg"})
+                self.assertEqual(len(part.mesh.attributes["texture_coordinates"]), 3 * len(low.triangles))
+                with self.assertRaises(ValueError):
+                    cw.write(path, [cw.Part("low", low, pictures={"colour": b""})])
         self.assertRaises(ValueError, lambda: cw.bake_normals(low, low, size=8))
         with self.fails(cw.Status.ARGUMENT):
             cw.bake_normals(cw.extract(make_ball(), 0), low)

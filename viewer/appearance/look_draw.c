@@ -310,7 +310,13 @@ static quad quad_of(const drawing *d, int x, int y)
     return (quad){(x & ~1) + 0.5, d->screen.height - 1 - bottom + 0.5};
 }
 
-/* Turns the normal and colours the point by the maps. */
+static bool has_maps(const cwi_look_part *part)
+{
+    return part->normal_map.count > 0 || part->color_map.count > 0 ||
+           part->occlusion_map.count > 0;
+}
+
+/* Turns the normal, colours the point and darkens the light by the maps. */
 static void apply_maps(const drawing *d, const facet *f, double x, double y, quad q,
                        cwi_look_point *p)
 {
@@ -334,6 +340,10 @@ static void apply_maps(const drawing *d, const facet *f, double x, double y, qua
         for (int a = 0; a < 3; a++)
             p->color[a] *= texel[a];
     }
+    if (f->part->occlusion_map.count > 0) {
+        cwi_look_texture_sample(&f->part->occlusion_map, &place, texel);
+        p->open = texel[0];
+    }
 }
 
 static void find_color(const drawing *d, const facet *f, double x, double y, double color[3])
@@ -356,7 +366,7 @@ static void shade_pixel(const drawing *d, const facet *f, int column, int row, u
 {
     const double x = column + 0.5, y = row + 0.5;
     const quad q = quad_of(d, column, row);
-    cwi_look_point p = {.bend = 0};
+    cwi_look_point p = {.open = 1};
     find_color(d, f, x, y, p.color);
     if (f->part->is_flat) {
         memcpy(p.normal, f->own_normal, sizeof p.normal);
@@ -368,8 +378,7 @@ static void shade_pixel(const drawing *d, const facet *f, int column, int row, u
         normal_at(f, q.x, q.y - 1, around[2]);
         p.bend = find_bend(d, around[0], around[1], around[2]);
     }
-    if (!d->picture->without_maps &&
-        (f->part->normal_map.count > 0 || f->part->color_map.count > 0))
+    if (!d->picture->without_maps && has_maps(f->part))
         apply_maps(d, f, x, y, q, &p);
     cwi_screen_to_eye(&d->screen, x, y, p.to_eye);
     cwi_look_shade(&d->light, &p, rgb);

@@ -14,6 +14,11 @@
 
 /* --- checks ------------------------------------------------------------------------------- */
 
+static bool has_maps(const cw_surface_look *s)
+{
+    return s->normal_map || s->color_map || s->occlusion_map;
+}
+
 static cw_status check_surface(const cw_surface_look *s, size_t n, cw_error *err)
 {
     if (!s->mesh)
@@ -21,7 +26,7 @@ static cw_status check_surface(const cw_surface_look *s, size_t n, cw_error *err
     cw_status st = cw_mesh_check(s->mesh, err);
     if (st != CW_OK)
         return st;
-    if ((s->normal_map || s->color_map) && !cwi_texture_of(s->mesh))
+    if (has_maps(s) && !cwi_texture_of(s->mesh))
         return cwi_fail(err, CW_ERR_ARGUMENT,
                         "surface %zu has maps; its mesh has no texture coordinates", n);
     if (s->normal_map && !s->mesh->normals)
@@ -36,11 +41,6 @@ static const cw_attribute *face_colors_of(const cw_mesh *mesh)
     const bool is_known =
         a && a->on == CW_ON_TRIANGLES && a->type == CW_U8 && a->components == 4;
     return is_known ? a : NULL;
-}
-
-static bool has_maps(const cw_surface_look *s)
-{
-    return s->normal_map || s->color_map;
 }
 
 /* --- one surface -------------------------------------------------------------------------- */
@@ -97,6 +97,8 @@ static cw_status put_maps(const cw_surface_look *s, const cw_mesh *mesh, size_t 
         st = cwi_look_texture_make(s->color_map, true, repeats, &part->color_map, err);
     if (st == CW_OK && s->normal_map)
         st = cwi_look_texture_make(s->normal_map, false, repeats, &part->normal_map, err);
+    if (st == CW_OK && s->occlusion_map)
+        st = cwi_look_texture_make(s->occlusion_map, false, repeats, &part->occlusion_map, err);
     if (st == CW_OK && s->normal_map)
         st = cwi_tangents(mesh, m->tangents + first, err);
     return st;
@@ -197,6 +199,7 @@ void cwi_look_model_free(cwi_look_model *m)
     for (size_t n = 0; n < m->part_count; n++) {
         cwi_look_texture_free(&m->parts[n].normal_map);
         cwi_look_texture_free(&m->parts[n].color_map);
+        cwi_look_texture_free(&m->parts[n].occlusion_map);
     }
     cwi_free(m->positions);
     cwi_free(m->normals);

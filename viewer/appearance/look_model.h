@@ -12,7 +12,7 @@ extern "C" {
 typedef struct cwi_look_part {
     size_t first_triangle;
     bool is_flat; /* without normals */
-    cwi_look_texture normal_map, color_map;
+    cwi_look_texture normal_map, color_map, occlusion_map;
 } cwi_look_part;
 
 typedef struct cwi_look_model {

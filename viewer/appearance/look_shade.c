@@ -146,7 +146,7 @@ void cwi_look_shade(const cwi_look_light *light, const cwi_look_point *p, uint8_
     const double single = REFLECTANCE * albedo[0] + albedo[1], lost = 1 - albedo[0] - albedo[1],
                  mean = REFLECTANCE + (1 - REFLECTANCE) / 21,
                  several = single * mean / (1 - lost * mean) * lost;
-    const double matt = SUN * nl * (1 - fresnel) + AMBIENT * (1 - single - several);
+    const double matt = SUN * nl * (1 - fresnel) + AMBIENT * p->open * (1 - single - several);
     for (int c = 0; c < 3; c++)
         rgb[c] = to_byte(light, light->grey * p->color[c] * matt + gloss);
 }

@@ -30,6 +30,7 @@ void cwi_look_turn_light(const cwi_screen *screen, cwi_look_light *light);
 typedef struct cwi_look_point {
     double normal[3], to_eye[3]; /* of length 1 */
     double color[3];             /* linear */
+    double open;                 /* share of the light from everywhere that arrives */
     double bend; /* change of the surface's own normal from pixel to pixel: adds to roughness */
 } cwi_look_point;
 

@@ -84,20 +84,28 @@ static bool is_opaque(const cw_image *image)
     return true;
 }
 
+static bool is_little_endian(void)
+{
+    return *(const uint8_t *)&(const uint16_t){1} == 1;
+}
+
 /* Writes the image; leaves by libpng's jump on any error, so nothing here may own memory. */
 static void put_image(png_structp png, png_infop info, const cw_image *image, bool is_color)
 {
     const bool opaque = is_opaque(image);
-    png_set_IHDR(png, info, (png_uint_32)image->width, (png_uint_32)image->height, 8,
-                 opaque ? PNG_COLOR_TYPE_RGB : PNG_COLOR_TYPE_RGBA, PNG_INTERLACE_NONE,
-                 PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+    png_set_IHDR(png, info, (png_uint_32)image->width, (png_uint_32)image->height,
+                 image->deep ? 16 : 8, opaque ? PNG_COLOR_TYPE_RGB : PNG_COLOR_TYPE_RGBA,
+                 PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
     if (is_color)
         png_set_sRGB(png, info, PNG_sRGB_INTENT_PERCEPTUAL);
     png_write_info(png, info);
     if (opaque)
-        png_set_filler(png, 0, PNG_FILLER_AFTER); /* pixels stay 4 bytes apart in memory */
+        png_set_filler(png, 0, PNG_FILLER_AFTER); /* pixels stay 4 channels apart in memory */
+    if (image->deep && is_little_endian())
+        png_set_swap(png);
     for (size_t y = 0; y < image->height; y++)
-        png_write_row(png, image->pixels + 4 * image->width * y);
+        png_write_row(png, image->deep ? (const uint8_t *)(image->deep + 4 * image->width * y)
+                                       : image->pixels + 4 * image->width * y);
     png_write_end(png, info);
 }
 

@@ -42,7 +42,5 @@ LC_ALL=C sed 's/\x89PNG/\xff\xd8\xff\xe0/' low.glb >jpeg.glb
 cubewright check jpeg.glb --reference full.ply --looks none 2>&1 | grep -e JPEG -e beside
 LC_ALL=C sed 's/IHDR/IHDX/' low.glb >broken.glb
 cubewright check broken.glb --reference full.ply --looks none -q >/dev/null || echo "exit $?"
-for change in 's/"source":0/"source":9/' 's/"TEXCOORD_0":3/"TEXCOORD_0":2/'; do
-    LC_ALL=C sed "$change" low.glb >odd.glb
-    cubewright check odd.glb --reference full.ply --looks none 2>&1 | grep -e beside -e 'its maps' -e 'cubewright:'
-done
+LC_ALL=C sed 's/"source":0/"source":9/' low.glb >odd.glb
+cubewright check odd.glb --reference full.ply --looks none 2>/dev/null | grep -e beside -e 'its maps'

@@ -36,7 +36,7 @@ echo $?
 ls e.glb 2>/dev/null
 cubewright help --search unwrap | head -n 3
 
-# a normal map of a finer mesh, in the file with tangents; other formats hold none
+# a normal map of a finer mesh, in the file with tangents; formats without pictures hold none
 cubewright make torus -o f.nrrd --dims 64 -q
 cubewright extract f.nrrd --iso 0 -o full.ply -q
 cubewright uv t.ply --bake full.ply --atlas 256 -o n.glb --json n.json -q
@@ -44,7 +44,12 @@ strings -n 4 n.glb | grep -o -e 'TANGENT' -e '"normalTexture":{"index":0}' -e 'i
 sed -n -e '/"maps": {/,/}/p' n.json
 for t in 1 4; do cubewright uv t.ply --bake full.ply --atlas 256 -o n$t.glb --name n -t $t -q; done
 cmp n1.glb n4.glb && echo "same"
-cubewright uv t.ply --bake full.ply -o n.obj
+cubewright uv t.ply --bake full.ply -o n.ply
+echo $?
+cubewright uv t.ply --bake full.ply --maps curvature,thickness --map-bits 16 --atlas 256 -o m.obj | grep -o "maps of full.ply"
+ls m-*.png
+cubewright uv t.ply --bake full.ply --maps curvature --atlas 256 --no-clobber -o m2.obj -q && ls m2*
+cubewright uv t.ply --bake full.ply --maps colors -o n.glb -q
 echo $?
 cubewright uv t.ply --reach 1mm -o n.glb
 echo $?

@@ -289,7 +289,7 @@ static cw_status take_maps(void *user, cw_pipeline_surface *surface,
     return CW_OK;
 }
 
-/* One atlas and one map, made as by hand of level 0, and of the surface before it was simplified. */
+/* One square and one map for all levels, made as by hand, of the surface before it was simplified. */
 static void levels_share_an_atlas_and_a_map(void **state)
 {
     (void)state;
@@ -319,23 +319,60 @@ static void levels_share_an_atlas_and_a_map(void **state)
     full_desc.lod_count = 0;
     full_desc.atlas = NULL;
     full_desc.bake = NULL;
-    cw_mesh full = make_by_hand(&volume, &full_desc), low = {0};
-    cw_image map = {0};
+    cw_mesh full = make_by_hand(&volume, &full_desc), low[2] = {{0}};
+    cw_mesh *const list[2] = {&low[0], &low[1]};
+    cw_image maps[CW_MAP_COUNT];
     const cw_bake_desc same = {.size = 256, .margin = facts.atlas.margin, .reach_mm = 10};
-    assert_ok(cw_simplify_levels(&full, &(cw_simplify_desc){0}, counts, 1, &low, NULL, &err),
+    assert_ok(cw_simplify_levels(&full, &(cw_simplify_desc){0}, counts, 2, low, NULL, &err),
               err);
-    assert_ok(cw_mesh_atlas(&low, &atlas, NULL, &err), err);
-    assert_ok(cw_bake_normals(&low, &full, &same, &map, NULL, &err), err);
-    test_assert_same_mesh(&low, &t.mesh[0]);
-    assert_memory_equal(map.pixels, t.map.pixels, 4 * 256 * 256);
+    assert_ok(cw_meshes_atlas(list, (double[]){1, 0.5}, 2, &atlas, NULL, &err), err);
+    assert_ok(cw_bake_meshes((const cw_mesh *const *)list, 2, &full, &same, maps, NULL, &err),
+              err);
+    assert_memory_equal(maps[CW_MAP_NORMALS].pixels, t.map.pixels, 4 * 256 * 256);
     for (size_t n = 0; n < 2; n++) {
-        assert_non_null(cw_mesh_attribute_find(&t.mesh[n], CW_TEXTURE_COORDINATES));
+        test_assert_same_mesh(&low[n], &t.mesh[n]);
+        assert_memory_equal(cw_mesh_attribute_find(&low[n], CW_TEXTURE_COORDINATES)->data,
+                            cw_mesh_attribute_find(&t.mesh[n], CW_TEXTURE_COORDINATES)->data,
+                            low[n].triangle_count * 6 * sizeof(float));
+        cw_mesh_free(&low[n]);
         cw_mesh_free(&t.mesh[n]);
     }
     cw_image_free(&t.map);
-    cw_image_free(&map);
+    cw_image_free(&maps[CW_MAP_NORMALS]);
     cw_mesh_free(&full);
-    cw_mesh_free(&low);
+    cw_volume_free(&volume);
+}
+
+/* The stages on a mesh are those on the volume that it came from, but for normals of the field. */
+static void a_mesh_runs_through_the_same_stages(void **state)
+{
+    (void)state;
+    cw_volume volume = make_noisy();
+    const cw_close_handles_desc handles = {.length_mm = 8};
+    const cw_simplify_desc simplify = {.triangles = 1500};
+    cw_pipeline_desc d = {.extract = {.isovalue = ISO},
+                          .largest = 2,
+                          .fill_voids = true,
+                          .close_handles = &handles,
+                          .simplify = cw_simplify_available() ? &simplify : NULL};
+    taken t = {0};
+    cw_mesh mesh, expected, empty = {0};
+    cw_pipeline_facts facts = {0};
+    cw_error err = {0};
+    assert_ok(cw_extract(&volume, &d.extract, &mesh, NULL, &err), err);
+    assert_ok(cw_pipeline_mesh(&volume, NULL, &d, &expected, NULL, &err), err);
+    assert_ok(
+        cw_pipeline_run_mesh(&mesh, &d, (cw_pipeline_sink){take_surface, &t}, &facts, &err),
+        err);
+    test_assert_same_mesh(&expected, &t.mesh);
+    assert_int_equal(facts.extracted.triangles, mesh.triangle_count);
+    cw_mesh_free(&t.mesh);
+    t = (taken){0};
+    assert_fails(
+        cw_pipeline_run_mesh(&empty, &d, (cw_pipeline_sink){take_surface, &t}, NULL, &err),
+        CW_ERR_EMPTY, "the mesh has no triangles", err);
+    cw_mesh_free(&mesh);
+    cw_mesh_free(&expected);
     cw_volume_free(&volume);
 }
 
@@ -482,6 +519,7 @@ static const struct excluded {
                            1u << CW_STAGE_LARGEST | 1u << CW_STAGE_FILL_VOIDS |
                            1u << CW_STAGE_HANDLES | 1u << CW_STAGE_SMOOTH | 1u << CW_STAGE_CUT |
                            1u << CW_STAGE_CULL | 1u << CW_STAGE_COLOR | TEXTURE},
+    {CW_SOURCE_MESH, 1u << CW_STAGE_VIEWS | 1u << CW_STAGE_CULL},
 };
 
 static void sources_exclude_what_they_cannot_give(void **state)
@@ -613,6 +651,7 @@ int main(void)
                                         test_folder_remove),
         cmocka_unit_test(levels_are_given_away_one_by_one),
         cmocka_unit_test(levels_share_an_atlas_and_a_map),
+        cmocka_unit_test(a_mesh_runs_through_the_same_stages),
         cmocka_unit_test(maps_need_an_atlas_and_fewer_triangles),
         cmocka_unit_test(stages_run_in_the_order_of_the_recipe),
         cmocka_unit_test(labels_are_simplified_together_and_given_away_apart),

@@ -365,7 +365,7 @@ static void what_a_format_does_not_keep_is_told(void **state)
         {"a.stl",
          CW_KEEPS_ALL & ~(unsigned)(CW_KEEPS_OPACITY | CW_KEEPS_PLACES | CW_KEEPS_PARTS |
                                     CW_KEEPS_ATTRIBUTES | CW_KEEPS_TEXTURE | CW_KEEPS_PICTURES |
-                                    CW_KEEPS_FACE_COLORS)},
+                                    CW_KEEPS_MATERIALS | CW_KEEPS_FACE_COLORS)},
     };
     static uint8_t colors[32];
     static float scalars[8];
@@ -389,8 +389,8 @@ static void what_a_format_does_not_keep_is_told(void **state)
     assert_ok(cw_parts_write_loss("a.stl", parts, 2, NULL, &loss, &err), err);
     assert_int_equal(loss.dropped,
                      CW_KEEPS_ALL & ~(unsigned)(CW_KEEPS_ATTRIBUTES | CW_KEEPS_TEXTURE |
-                                                CW_KEEPS_PICTURES | CW_KEEPS_FACE_COLORS |
-                                                CW_KEEPS_OPACITY));
+                                                CW_KEEPS_PICTURES | CW_KEEPS_MATERIALS |
+                                                CW_KEEPS_FACE_COLORS | CW_KEEPS_OPACITY));
     mesh.colors = NULL;
     mesh.scalars = NULL;
     mesh.labels = NULL;

@@ -1,75 +1,14 @@
 /* Atlases: charts that lie flat, apart, and as large as the surface. */
 #include "support/solids.h"
-#include "support/surface.h"
+#include "support/texture.h"
 
 #include <cubewright/atlas.h>
+
+#include "core/texture/gather_meshes.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-/* Texels of the pictures in which overlaps are looked for. */
-enum { PICTURE = 1024 };
-
-static const float (*coordinates_of(const cw_mesh *mesh))[2]
-{
-    const cw_attribute *uv = cw_mesh_attribute_find(mesh, CW_TEXTURE_COORDINATES);
-    assert_non_null(uv);
-    assert_int_equal(uv->on, CW_ON_CORNERS);
-    assert_int_equal(uv->type, CW_F32);
-    assert_int_equal(uv->components, 2);
-    return uv->data;
-}
-
-/* Positive as seen in the image, whose second axis goes down. */
-static double area_of(const float (*uv)[2])
-{
-    return -((double)(uv[1][0] - uv[0][0]) * (double)(uv[2][1] - uv[0][1]) -
-             (double)(uv[1][1] - uv[0][1]) * (double)(uv[2][0] - uv[0][0])) /
-           2;
-}
-
-/* Distance of a point inside from the nearest side, negative outside. */
-static double depth_in(const float (*uv)[2], double x, double y)
-{
-    double depth = INFINITY;
-    for (int k = 0; k < 3; k++) {
-        const float *a = uv[k], *b = uv[(k + 1) % 3];
-        const double dx = (double)b[0] - (double)a[0], dy = (double)b[1] - (double)a[1];
-        depth =
-            fmin(depth, -(dx * (y - (double)a[1]) - dy * (x - (double)a[0])) / hypot(dx, dy));
-    }
-    return depth;
-}
-
-/* Counts texels whose middle lies within two triangles, away from their sides by what single precision
- * rounds; sets the number that lie in one. */
-static size_t count_overlaps(const cw_mesh *mesh, size_t *covered)
-{
-    const float(*uv)[2] = coordinates_of(mesh);
-    unsigned char *seen = calloc(PICTURE, PICTURE);
-    size_t overlaps = 0;
-    assert_non_null(seen);
-    *covered = 0;
-    for (size_t t = 0; t < mesh->triangle_count; t++, uv += 3) {
-        double low[2] = {1, 1}, high[2] = {0, 0};
-        for (int k = 0; k < 6; k++) {
-            low[k % 2] = fmin(low[k % 2], (double)uv[k / 2][k % 2]);
-            high[k % 2] = fmax(high[k % 2], (double)uv[k / 2][k % 2]);
-        }
-        for (int y = (int)(low[1] * PICTURE); y < PICTURE && y <= high[1] * PICTURE; y++)
-            for (int x = (int)(low[0] * PICTURE); x < PICTURE && x <= high[0] * PICTURE; x++) {
-                unsigned char *texel = &seen[(size_t)y * PICTURE + (size_t)x];
-                if (!(depth_in(uv, (x + 0.5) / PICTURE, (y + 0.5) / PICTURE) > 1e-6))
-                    continue;
-                overlaps += *texel == 1;
-                *covered += *texel == 0;
-                *texel = 1;
-            }
-    }
-    free(seen);
-    return overlaps;
-}
 
 /* Makes an atlas and checks all that is promised of one. */
 static cw_atlas_facts check_atlas(cw_mesh *mesh, const cw_atlas_desc *desc)
@@ -78,10 +17,10 @@ static cw_atlas_facts check_atlas(cw_mesh *mesh, const cw_atlas_desc *desc)
     cw_error err = {0};
     size_t covered;
     assert_ok(cw_mesh_atlas(mesh, desc, &facts, &err), err);
-    const float(*uv)[2] = coordinates_of(mesh);
+    const float(*uv)[2] = test_coordinates(mesh);
     double sum = 0, space = 0;
     for (size_t t = 0; t < mesh->triangle_count; t++) {
-        const double area = area_of(uv + 3 * t);
+        const double area = test_texture_area(uv + 3 * t);
         assert_true(area >= 0);
         sum += area;
         for (int k = 0; k < 6; k++)
@@ -92,8 +31,8 @@ static cw_atlas_facts check_atlas(cw_mesh *mesh, const cw_atlas_desc *desc)
     space = q.area_mm2 * facts.texels_per_mm * facts.texels_per_mm / facts.size / facts.size;
     assert_near(sum, space, 1e-3 * space);
     assert_near(facts.coverage, sum, 1e-4 * sum);
-    assert_int_equal(count_overlaps(mesh, &covered), 0);
-    assert_near((double)covered / PICTURE / PICTURE, facts.coverage, 0.05);
+    assert_int_equal(test_count_overlaps(mesh, &covered), 0);
+    assert_near((double)covered / TEST_PICTURE / TEST_PICTURE, facts.coverage, 0.05);
     assert_true(facts.stretch >= 1 - 1e-6 && facts.stretch < 1.3);
     assert_int_equal(facts.flipped, 0);
     assert_true(facts.charts >= 1 && facts.charts <= mesh->triangle_count);
@@ -141,7 +80,7 @@ static void any_unit_gives_the_same(void **state)
             mesh.positions[i] *= scale;
         const cw_atlas_facts facts = check_atlas(&mesh, NULL);
         assert_int_equal(facts.charts, expected.charts);
-        assert_memory_equal(coordinates_of(&mesh), coordinates_of(&first),
+        assert_memory_equal(test_coordinates(&mesh), test_coordinates(&first),
                             3 * mesh.triangle_count * sizeof(float[2]));
         cw_mesh_free(&mesh);
     }
@@ -156,7 +95,7 @@ static void any_number_of_threads_gives_the_same(void **state)
     for (int threads = 2; threads < 6; threads += 3) {
         cw_mesh mesh = test_extract_field(CW_FIELD_GYROID, 40);
         check_atlas(&mesh, &(cw_atlas_desc){.threads = threads});
-        assert_memory_equal(coordinates_of(&mesh), coordinates_of(&first),
+        assert_memory_equal(test_coordinates(&mesh), test_coordinates(&first),
                             3 * mesh.triangle_count * sizeof(float[2]));
         cw_mesh_free(&mesh);
     }
@@ -230,7 +169,7 @@ static void charts_have_margins(void **state)
     for (int n = 0; n < 3; n++)
         test_add_box(&cube, (double[3]){3 * n, 0, 0}, (double[3]){3 * n + 1, 2, 3}, false);
     check_atlas(&cube, &(cw_atlas_desc){.size = SIZE, .margin = MARGIN});
-    const float(*uv)[2] = coordinates_of(&cube);
+    const float(*uv)[2] = test_coordinates(&cube);
     const size_t corners = 3 * cube.triangle_count;
     uint32_t *chart = malloc(corners * sizeof *chart);
     assert_non_null(chart);
@@ -275,7 +214,7 @@ static void a_density_is_kept_or_refused(void **state)
     const cw_atlas_desc more = {.texels_per_mm = 2 * most};
     assert_fails(cw_mesh_atlas(&mesh, &more, NULL, &err), CW_ERR_ARGUMENT,
                  "do not fit into 2048 x 2048 texels at this density", err);
-    coordinates_of(&mesh); /* those of before */
+    test_coordinates(&mesh); /* those of before */
     const cw_atlas_desc tiny = {.size = 64, .margin = 64};
     assert_fails(cw_mesh_atlas(&mesh, &tiny, NULL, &err), CW_ERR_ARGUMENT, "do not fit", err);
     cw_mesh_free(&mesh);
@@ -322,7 +261,7 @@ static void seams_split_vertices(void **state)
     float(*uv)[2] = malloc(corners * sizeof *uv),
     (*places)[6] = malloc(corners * sizeof *places);
     assert_true(uv && places);
-    memcpy(uv, coordinates_of(&mesh), corners * sizeof *uv);
+    memcpy(uv, test_coordinates(&mesh), corners * sizeof *uv);
     for (size_t c = 0; c < corners; c++) {
         memcpy(places[c], mesh.positions + 3 * (size_t)mesh.triangles[c], 12);
         memcpy(places[c] + 3, mesh.normals + 3 * (size_t)mesh.triangles[c], 12);
@@ -358,6 +297,44 @@ static void it_can_be_cancelled(void **state)
     }
 }
 
+/* Returns the area of a mesh's triangles in the texture. */
+static double sum_texture(const cw_mesh *mesh)
+{
+    const float(*uv)[2] = test_coordinates(mesh);
+    double sum = 0;
+    for (size_t t = 0; t < mesh->triangle_count; t++)
+        sum += test_texture_area(uv + 3 * t);
+    return sum;
+}
+
+static void meshes_share_a_square(void **state)
+{
+    (void)state;
+    const double scales[2] = {1, 0.5}, wrong[2] = {1, 0};
+    cw_mesh a = test_extract_field(CW_FIELD_TORUS, 24),
+            b = test_extract_field(CW_FIELD_TORUS, 24), all = {0};
+    cw_mesh *const list[2] = {&a, &b};
+    cw_atlas_facts facts;
+    cw_error err = {0};
+    assert_fails(cw_meshes_atlas(list, wrong, 2, NULL, NULL, &err), CW_ERR_ARGUMENT,
+                 "scales[1] is 0", err);
+    assert_fails(cw_meshes_atlas(list, NULL, 0, NULL, NULL, &err), CW_ERR_ARGUMENT,
+                 "count is 0", err);
+    assert_ok(cw_meshes_atlas(list, scales, 2, &(cw_atlas_desc){.size = 512}, &facts, &err),
+              err);
+    const double large = sum_texture(&a), small = sum_texture(&b);
+    assert_near(small, large / 4, 0.01 * large);
+    const cw_quality q = test_measure(&a);
+    assert_near(large, q.area_mm2 * pow(facts.texels_per_mm / 512, 2), 0.01 * large);
+    const cw_mesh *const both[2] = {&a, &b};
+    assert_ok(cwi_gather_meshes(both, NULL, 2, false, true, &all, &err), err);
+    size_t covered;
+    assert_int_equal(test_count_overlaps(&all, &covered), 0);
+    cw_mesh_free(&all);
+    cw_mesh_free(&a);
+    cw_mesh_free(&b);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -372,6 +349,7 @@ int main(void)
         cmocka_unit_test(wrong_settings_are_named),
         cmocka_unit_test(seams_split_vertices),
         cmocka_unit_test(it_can_be_cancelled),
+        cmocka_unit_test(meshes_share_a_square),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

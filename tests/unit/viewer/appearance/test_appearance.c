@@ -203,6 +203,27 @@ static void one_color_is_drawn_in_three_ways(void **state)
         cw_mesh_free(&mesh[n]);
 }
 
+/* Occlusion takes the light from everywhere away, and no other: white changes nothing. */
+static void occlusion_darkens_the_light_from_everywhere(void **state)
+{
+    (void)state;
+    static cw_appearance with;
+    cw_error err = {0};
+    double last = 1e9;
+    cw_mesh mesh = make_smooth(CW_FIELD_SPHERE, 20);
+    assert_ok(cw_mesh_atlas(&mesh, &(cw_atlas_desc){.size = 128}, NULL, &err), err);
+    for (int open = 0; open <= 255; open += 85) {
+        uint8_t texel[4] = {(uint8_t)open, 7, 9, 255};
+        const cw_image map = {.width = 1, .height = 1, .pixels = texel};
+        const cw_surface_look plain = {.mesh = &mesh},
+                              dark = {.mesh = &mesh, .occlusion_map = &map};
+        measure(&plain, &dark, &with, NULL);
+        assert_true(with.all.rmse < last && (with.all.rmse == 0) == (open == 255));
+        last = with.all.rmse;
+    }
+    cw_mesh_free(&mesh);
+}
+
 /* --- normal maps -------------------------------------------------------------------------- */
 
 /* Bakes a full surface on a coarse one. */
@@ -516,6 +537,7 @@ int main(void)
         cmocka_unit_test(a_sphere_covers_its_circle),
         cmocka_unit_test(colors_differ_by_what_the_pictures_show),
         cmocka_unit_test(one_color_is_drawn_in_three_ways),
+        cmocka_unit_test(occlusion_darkens_the_light_from_everywhere),
         cmocka_unit_test(a_surface_with_its_own_normals_looks_the_same),
         cmocka_unit_test(a_baked_map_shows_the_full_surface),
         cmocka_unit_test(the_worst_view_sees_the_difference),

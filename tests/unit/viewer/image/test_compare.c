@@ -230,7 +230,9 @@ static void pixels_that_differ_are_counted(void **state)
     (void)state;
     uint8_t p[3][4] = {{10, 20, 30, 255}, {10, 20, 30, 255}, {10, 20, 30, 255}};
     uint8_t q[3][4] = {{12, 20, 30, 255}, {10, 20, 27, 255}, {10, 20, 30, 0}};
-    const cw_image a = {3, 1, p[0]}, b = {3, 1, q[0]}, tall = {1, 3, q[0]};
+    const cw_image a = {.width = 3, .height = 1, .pixels = p[0]},
+                   b = {.width = 3, .height = 1, .pixels = q[0]},
+                   tall = {.width = 1, .height = 3, .pixels = q[0]};
     size_t differ;
     cw_error err = {0};
     for (int tolerance = 0; tolerance < 4; tolerance++) {
