@@ -1,6 +1,6 @@
 /* Measures a mesh for the command check: its defects, and how far and how different it is from a field or from
  * another mesh. */
-#include "cli/commands/check_run.h"
+#include "cli/check/check_run.h"
 
 #include "cli/framework/console.h"
 #include "cli/inputs/extract_surface.h"

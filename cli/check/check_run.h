@@ -1,6 +1,6 @@
 /* The command check between its files: options, and a run with its measurements. */
-#ifndef CLI_COMMANDS_CHECK_RUN_H
-#define CLI_COMMANDS_CHECK_RUN_H
+#ifndef CLI_CHECK_CHECK_RUN_H
+#define CLI_CHECK_CHECK_RUN_H
 
 #include "cli/framework/quantity.h"
 #include "cli/inputs/mesh_input.h"
@@ -8,6 +8,9 @@
 #include "cli/looks/looks_input.h"
 #include "cli/results/printability.h"
 #include "cli/results/run_report.h"
+
+/* The command (cmd_check.c). */
+extern const cli_command cli_check;
 
 typedef struct cli_check_args {
     cli_common common;

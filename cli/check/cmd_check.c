@@ -1,7 +1,7 @@
 /* The command check: measures the defects of a mesh and its distances to a field or another
  * mesh, and holds them against a profile. */
-#include "cli/commands/check_run.h"
-#include "cli/commands/command_rows.h"
+#include "cli/check/check_run.h"
+#include "cli/framework/commands.h"
 #include "cli/framework/console.h"
 #include "cli/framework/quantity.h"
 #include "cli/inputs/extract_surface.h"
