@@ -1,6 +1,7 @@
 /* The table of all commands, in the order of the help. */
 #include "cli/command_table.h"
 
+#include "cli/check/check_run.h"
 #include "cli/commands/command_rows.h"
 #include "cli/extract/extract_run.h"
 #include "cli/extract/part_join.h"

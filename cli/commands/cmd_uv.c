@@ -1,10 +1,11 @@
 /* The command uv: texture coordinates, one square for all parts of a file, and a normal map. */
 #include "cli/assets/texture_options.h"
+#include "cli/assets/uv_rebake.h"
 #include "cli/commands/command_rows.h"
 #include "cli/commands/mesh_command.h"
-#include "cli/commands/uv_rebake.h"
 #include "cli/framework/console.h"
 #include "cli/framework/quantity.h"
+#include "cli/looks/looks_facts.h"
 #include "core/base/memory.h"
 #include "core/base/status.h"
 #include "core/mesh/mesh.h"
@@ -18,6 +19,7 @@ typedef struct uv_args {
     cli_mesh_args mesh;
     cli_texture_args texture;
     const char *rebake;
+    const char *looks;
 } uv_args;
 
 typedef struct uv_state {
@@ -27,6 +29,8 @@ typedef struct uv_state {
     cw_bake_facts baked;
     cli_maps maps;
     cli_rebake rebaked; /* of --rebake */
+    cli_looks_limit limit;
+    cw_appearance looks, bare_looks; /* of --looks: with maps, and without */
 } uv_state;
 
 static const uv_args *args_of(const cli_mesh_run *r)
@@ -53,6 +57,9 @@ static const cli_option options[] = {
     {"reach", 0, CLI_LENGTH, "L",
      "How far the mesh of --bake or --rebake may be (4% of the box's diagonal)",
      offsetof(uv_args, texture) + offsetof(cli_texture_args, reach)},
+    {"looks", 0, CLI_TEXT, "none/N/NdB",
+     "Compare the looks with the mesh of --bake; limits: mean CIEDE2000 of N, PSNR of NdB",
+     offsetof(uv_args, looks)},
     CLI_HEADED("Parts"),
     CLI_MESH_MERGE,
     CLI_MESH_ORIENT,
@@ -61,7 +68,7 @@ static const cli_option options[] = {
 
 static const cli_rule rules[] = {
     {NULL, CLI_NEEDS, "output"},
-    {"maps map-bits", CLI_NEEDS, "bake"},
+    {"maps map-bits looks", CLI_NEEDS, "bake"},
     {"reach", CLI_NEEDS, "bake rebake"},
     CLI_COMPRESS_RULES,
 };
@@ -71,6 +78,8 @@ static const cli_rule rules[] = {
 static void put_params(cli_json *j, const cli_mesh_run *r, const cli_made *made)
 {
     cli_json_texture(j, &args_of(r)->texture);
+    if (args_of(r)->looks)
+        cli_json_text(j, "looks", args_of(r)->looks);
     cli_json_bool(j, "merge", r->args->merge);
     cli_json_bool(j, "orient", r->args->orient);
     cli_json_count(j, "merged_vertices", r->pieces.merged);
@@ -91,6 +100,8 @@ static void put_facts(cli_json *j, const cli_mesh_run *r)
         cli_json_maps(j, "maps", &s->baked);
     if (args_of(r)->rebake)
         cli_json_maps(j, "pictures", &s->rebaked.facts);
+    if (args_of(r)->looks)
+        cli_looks_json(j, &s->looks, &s->bare_looks);
 }
 
 /* Says how maps or pictures came out. missing: what texels are that found nothing */
@@ -110,6 +121,15 @@ static void report_bake(cli_mesh_run *r, const char *what, const char *path,
             missed, f->reach_mm, path, missing);
 }
 
+static void report_looks(cli_mesh_run *r)
+{
+    const uv_state *s = r->state;
+    const size_t used = strlen(r->found);
+    char text[CLI_LOOKS_TEXT];
+    cli_looks_text(&s->looks, &s->bare_looks, text);
+    snprintf(r->found + used, sizeof r->found - used, "; looks: %s", text);
+}
+
 static cw_status report_facts(cli_mesh_run *r, cw_error *err)
 {
     const uv_state *s = r->state;
@@ -121,6 +141,8 @@ static cw_status report_facts(cli_mesh_run *r, cw_error *err)
         report_bake(r, "maps", s->full.path, &s->baked, "flat");
     if (args_of(r)->rebake)
         report_bake(r, "pictures", s->rebaked.old.path, &s->rebaked.facts, "white");
+    if (args_of(r)->looks)
+        report_looks(r);
     if (f->flipped)
         cli_report_warn(&r->report, "single precision turned %s triangles over: --atlas %u",
                         cli_count(f->flipped), 2 * f->size);
@@ -138,7 +160,10 @@ static cw_status check_values(cli_mesh_run *r, cw_error *err)
         return cwi_fail(err, CW_ERR_ARGUMENT,
                         "%s holds no pictures; --rebake is for .glb, .gltf and .obj",
                         format->name);
-    return cli_check_texture(&texture, r->args->output, r->args->written.format, err);
+    cw_status st = cli_check_texture(&texture, r->args->output, r->args->written.format, err);
+    if (st == CW_OK && args_of(r)->looks)
+        st = cli_looks_parse(args_of(r)->looks, &((uv_state *)r->state)->limit, err);
+    return st;
 }
 
 /* --- work --------------------------------------------------------------------------------- */
@@ -178,12 +203,41 @@ static cw_status resolve_reach(cli_mesh_run *r, cw_error *err)
                            err);
 }
 
+static const cw_image *image_or_none(const cw_image *image)
+{
+    return image->pixels ? image : NULL;
+}
+
+/* Compares the pieces and their maps with the full mesh. */
+static cw_status compare_looks(cli_mesh_run *r, cw_mesh *const *list, const cw_image *images,
+                               cw_error *err)
+{
+    uv_state *s = r->state;
+    const cw_surface_look full = {.mesh = &s->full.mesh};
+    const cw_appearance_desc desc = {.threads = r->threads,
+                                     .progress = cli_progress(8, "view")};
+    cw_surface_look *pieces = calloc(r->pieces.count, sizeof *pieces);
+    for (size_t n = 0; n < r->pieces.count && pieces; n++)
+        pieces[n] =
+            (cw_surface_look){.mesh = list[n],
+                              .normal_map = image_or_none(&images[CW_MAP_NORMALS]),
+                              .color_map = image_or_none(&images[CW_MAP_COLORS]),
+                              .occlusion_map = image_or_none(&images[CW_MAP_OCCLUSION])};
+    cw_status st = pieces ? cw_appearance_measure(&full, 1, pieces, r->pieces.count, &desc,
+                                                  &s->looks, &s->bare_looks, err)
+                          : cwi_fail_memory(err);
+    free(pieces);
+    return st == CW_OK ? cli_looks_hold(&s->limit, &s->looks, err) : st;
+}
+
 static cw_status bake_full(cli_mesh_run *r, cw_mesh *const *list, const cw_bake_desc *desc,
                            cw_error *err)
 {
     uv_state *s = r->state;
     cw_image images[CW_MAP_COUNT] = {{0}};
     cw_status st = s->full.mesh.normals ? CW_OK : cw_mesh_weld(&s->full.mesh, NULL, err);
+    if (st == CW_OK && !s->full.mesh.normals)
+        st = cw_mesh_normals(&s->full.mesh, err);
     if (st == CW_OK)
         st = cw_bake_meshes((const cw_mesh *const *)list, r->pieces.count, &s->full.mesh, desc,
                             images, &s->baked, err);
@@ -191,6 +245,8 @@ static cw_status bake_full(cli_mesh_run *r, cw_mesh *const *list, const cw_bake_
         r->blamed = s->full.path;
     if (st == CW_OK)
         st = cli_encode_maps(images, &s->maps, err);
+    if (st == CW_OK && args_of(r)->looks)
+        st = compare_looks(r, list, images, err);
     for (int m = 0; m < CW_MAP_COUNT; m++)
         cw_image_free(&images[m]);
     return st;

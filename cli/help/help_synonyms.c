@@ -30,6 +30,10 @@ const cli_synonym cli_synonyms[] = {
      "'extract --profile game' and 'convert --profile game' make an asset: levels of detail, "
      "texture coordinates and a normal map in one GLB."},
     {"pivot|origin|centre|center", "pivot", "--pivot|--local", NULL},
+    {"look|appearance|psnr|ciede|delta e|visual|image difference|similar", NULL,
+     "--looks|--bake",
+     "'check --reference MESH --looks none' measures how alike two meshes look: PSNR and CIEDE2000 of eight "
+     "views, with the pictures on them and without."},
     {"denois|despeckl", NULL, "--denoise|smooth|--min-volume|--drop-components",
      "'extract --denoise' smooths the values of volumes, 'smooth' meshes. --min-volume and "
      "--drop-components remove small components."},

@@ -140,8 +140,8 @@ static cw_status read_pictures(const char *path, const cw_mesh_read_desc *desc, 
     return st;
 }
 
-static cw_status read_file(const char *path, const char *reader, const cli_input *input,
-                           bool parts, bool reference, cli_mesh *mesh, cw_error *err)
+static cw_mesh_read_desc make_desc(const char *path, const char *reader, const cli_input *input,
+                                   bool reference)
 {
     cw_mesh_read_desc desc = {
         .reader = reader,
@@ -156,6 +156,13 @@ static cw_status read_file(const char *path, const char *reader, const cli_input
     if (reference)
         desc.claim.rule = CW_CLAIM_FILL;
     desc.progress = cli_progress(file_bytes(path) / 1e6, "MB");
+    return desc;
+}
+
+static cw_status read_file(const char *path, const char *reader, const cli_input *input,
+                           bool parts, bool reference, cli_mesh *mesh, cw_error *err)
+{
+    const cw_mesh_read_desc desc = make_desc(path, reader, input, reference);
     *mesh = (cli_mesh){.path = path};
     cw_status st =
         parts ? cw_parts_read(path, &desc, &mesh->parts, &mesh->part_count, &mesh->file, err)
@@ -183,6 +190,15 @@ cw_status cli_read_parts(const char *path, const char *reader, const cli_input *
                          cli_mesh *mesh, cw_error *err)
 {
     return read_file(path, reader, input, true, false, mesh, err);
+}
+
+cw_status cli_read_parts_again(const cli_mesh *whole, bool is_reference, const char *reader,
+                               const cli_input *input, cli_mesh *parts, cw_error *err)
+{
+    const cw_mesh_read_desc desc = make_desc(whole->path, reader, input, is_reference);
+    *parts = (cli_mesh){.path = whole->path};
+    return cw_parts_read(whole->path, &desc, &parts->parts, &parts->part_count, &parts->file,
+                         err);
 }
 
 cw_status cli_orient_mesh(cli_mesh *m, int threads, cw_error *err)

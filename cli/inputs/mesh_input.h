@@ -65,6 +65,12 @@ CW_NODISCARD cw_status cli_read_reference(const char *path, const char *reader,
 CW_NODISCARD cw_status cli_read_parts(const char *path, const char *reader,
                                       const cli_input *input, cli_mesh *mesh, cw_error *err);
 
+/* Reads the parts of a file that was read as one mesh, and says nothing.
+ * is_reference  it was read by cli_read_reference() */
+CW_NODISCARD cw_status cli_read_parts_again(const cli_mesh *whole, bool is_reference,
+                                            const char *reader, const cli_input *input,
+                                            cli_mesh *parts, cw_error *err);
+
 /* Turns shells round that face the wrong way, of each part by itself, and says how many. */
 CW_NODISCARD cw_status cli_orient_mesh(cli_mesh *mesh, int threads, cw_error *err);
 

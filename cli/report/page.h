@@ -2,7 +2,7 @@
 #ifndef CLI_REPORT_PAGE_H
 #define CLI_REPORT_PAGE_H
 
-#include "cli/study/study.h"
+#include "cli/study/mesh_study.h"
 
 #include <stdio.h>
 
@@ -47,6 +47,7 @@ void cli_put_pictures(FILE *out, const cli_study *study);
 void cli_put_family(FILE *out, const cli_study *study, cli_family family);
 void cli_put_quality(FILE *out, const cli_study *study);
 void cli_put_verdicts(FILE *out, const cw_verdict *verdicts, size_t count);
+void cli_put_looks(FILE *out, const cli_mesh_study *study);
 void cli_put_print(FILE *out, const cli_study *study);
 
 /* The scale of colours of errors, with ticks in millimetres and voxels. */

@@ -131,6 +131,7 @@ void cli_put_mesh_page(FILE *out, const void *study)
     cli_put_view(out, &m->study);
     cli_put_pictures(out, &m->study);
     put_distances(out, m);
+    cli_put_looks(out, m);
     fputs("<h2>Checks</h2>\n<p>As check gives them: ", out);
     if (command)
         cli_put_code(out, command);

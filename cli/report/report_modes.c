@@ -37,6 +37,8 @@ static cw_status open_mesh(cli_report_run *s, cw_error *err)
         cli_read_mesh(args->common.inputs[0], args->mesh_reader, &args->input, &m->mesh, err);
     if (st != CW_OK)
         return st;
+    m->input = &args->input;
+    m->reader = args->mesh_reader;
     m->study.full = m->mesh.mesh;
     m->mesh.mesh = (cw_mesh){0};
     st = cli_read_volume(args->source, &source, false, &s->volume, err);

@@ -8,6 +8,7 @@
 #include "cli/framework/temp_folder.h"
 #include "cli/inputs/extract_surface.h"
 #include "cli/inputs/level_choice.h"
+#include "cli/looks/looks_facts.h"
 #include "cli/results/check_verdicts.h"
 #include "cli/results/mesh_comparison.h"
 #include "core/base/memory.h"
@@ -22,6 +23,8 @@
 
 /* Vertices whose values are looked at to fit a level. */
 enum { FIT_VERTICES = 50000 };
+/* Pixels along each side of pictures of looks. */
+enum { LOOKS_PIXELS = 512 };
 /* Values at the vertices of an extracted surface differ by rounding, less than this fraction of the
  * range of all values. */
 static const double SURE_FRACTION = 1e-3;
@@ -132,14 +135,75 @@ static cw_status measure_to_field(cli_mesh_study *m, float *worst, cw_error *err
     return st;
 }
 
-/* From the vertices of the surface as we extract it, which shows what the mesh has not. */
+/* Divides the colours at outlines by their opacity, as files have them. */
+static void divide_by_opacity(cw_image *image)
+{
+    for (size_t n = 0; n < image->width * image->height; n++) {
+        uint8_t *pixel = image->pixels + 4 * n;
+        for (int c = 0; c < 3 && pixel[3]; c++) {
+            const int full = (255 * pixel[c] + pixel[3] / 2) / pixel[3];
+            pixel[c] = (uint8_t)(full < 255 ? full : 255);
+        }
+    }
+}
+
+static cw_status draw_looks(const cli_mesh_study *m, const cw_surface_look *surfaces,
+                            size_t count, cli_png *png, cw_error *err)
+{
+    const cw_appearance_desc desc = {.size = LOOKS_PIXELS, .threads = m->study.threads};
+    cw_image image = {0};
+    cw_status st = cw_appearance_draw(surfaces, count, &m->looks.place[m->looks.worst].camera,
+                                      &desc, &image, err);
+    if (st == CW_OK) {
+        divide_by_opacity(&image);
+        st = cli_make_png(&m->study, &image, png, err);
+    }
+    cw_image_free(&image);
+    return st;
+}
+
+static cw_status draw_worst_view(cli_mesh_study *m, const cw_surface_look *reference,
+                                 cli_looks *looks, cw_error *err)
+{
+    cw_status st = draw_looks(m, reference, 1, &m->drawn_source, err);
+    if (st == CW_OK)
+        st = draw_looks(m, looks->surfaces, looks->count, &m->drawn, err);
+    if (st != CW_OK || !looks->has_maps)
+        return st;
+    for (size_t n = 0; n < looks->count; n++)
+        looks->surfaces[n] = (cw_surface_look){.mesh = looks->surfaces[n].mesh};
+    return draw_looks(m, looks->surfaces, looks->count, &m->drawn_bare, err);
+}
+
+/* Compares how the mesh and the surface of its volume look, and draws both from the worst view. */
+static cw_status compare_looks(cli_mesh_study *m, const cw_mesh *surface, cw_error *err)
+{
+    const cw_surface_look reference = {.mesh = surface};
+    const cw_appearance_desc desc = {.threads = m->study.threads,
+                                     .progress = cli_progress(8, "view")};
+    cli_looks looks = {0};
+    cli_mesh whole = m->mesh; /* with the triangles, which the study has */
+    whole.mesh = m->study.full;
+    cli_say_v("looks");
+    cw_status st = cli_looks_find(&whole, false, m->reader, m->input, &looks, err);
+    if (st == CW_OK)
+        st = cw_appearance_measure(&reference, 1, looks.surfaces, looks.count, &desc, &m->looks,
+                                   &m->bare_looks, err);
+    m->has_maps = looks.has_maps;
+    if (st == CW_OK)
+        st = draw_worst_view(m, &reference, &looks, err);
+    cli_looks_free(&looks);
+    return st;
+}
+
+/* From the vertices of the surface as we extract it, which shows what the mesh has not; and how both
+ * look. */
 static cw_status measure_from_field(cli_mesh_study *m, cw_error *err)
 {
     cli_point *p = &m->study.points[0];
     const cw_extract_desc extract = {.isovalue = m->study.iso,
                                      .inside_is_low = m->study.inside_is_low,
                                      .leave_open = m->is_open,
-                                     .no_normals = true,
                                      .threads = m->study.threads};
     cw_mesh surface = {0};
     cw_extract_counts counts;
@@ -149,6 +213,8 @@ static cw_status measure_from_field(cli_mesh_study *m, cw_error *err)
         .vertices_only = true, .threads = m->study.threads, .progress = progress_of(&surface)};
     if (st == CW_OK)
         st = cw_distance_to_mesh(&surface, &m->study.full, &back, &m->from_field, NULL, err);
+    if (st == CW_OK)
+        st = compare_looks(m, &surface, err);
     cw_mesh_free(&surface);
     p->back = (cli_gap){true, m->from_field.max_mm, m->from_field.rms_mm, m->from_field.p99_mm};
     m->findings.from_field = &m->from_field;
@@ -209,6 +275,9 @@ void cli_free_mesh_study(cli_mesh_study *m)
 {
     cli_study_free(&m->study);
     cli_free_mesh(&m->mesh);
+    free(m->drawn_source.bytes);
+    free(m->drawn.bytes);
+    free(m->drawn_bare.bytes);
 }
 
 char *cli_check_command(const cli_mesh_study *m)
@@ -266,6 +335,7 @@ void cli_put_mesh_json(FILE *out, const void *study)
     cli_json_number(&j, "voxel_mm", m->study.voxel_mm);
     cli_json_verdicts(&j, m->verdicts, m->verdict_count);
     cli_json_errors(&j, &m->findings);
+    cli_looks_json(&j, &m->looks, m->has_maps ? &m->bare_looks : NULL);
     cli_json_shapes(&j, &m->quality.shapes);
     cli_json_text(&j, "command", command ? command : "");
     cli_json_number(&j, "seconds", m->study.seconds);

@@ -4,12 +4,15 @@
 #define CLI_STUDY_MESH_STUDY_H
 
 #include "cli/inputs/mesh_input.h"
+#include "cli/looks/looks_input.h"
 #include "cli/study/study.h"
 
 typedef struct cli_mesh_study {
     cli_study
         study;     /* of the volume and the level. Its only point is the mesh; study.full is */
     cli_mesh mesh; /* its file; the triangles are in study.full */
+    const cli_input *input; /* it was read with these settings, */
+    const char *reader;     /* and by this reader; NULL: by its content */
     size_t file_bytes;
     bool is_fitted;                /* the level is the median of the field at vertices: */
     size_t fit_count, fit_outside; /* vertices looked at; of those outside the volume */
@@ -18,7 +21,11 @@ typedef struct cli_mesh_study {
     bool is_open; /* it has open edges, so the surface is left open where the volume ends */
     cw_quality quality;
     cw_distance to_field, from_field;
-    cw_findings findings; /* points into this */
+    cw_appearance looks, bare_looks; /* beside the surface of the volume: with maps, without */
+    bool has_maps;
+    cli_png drawn_source, drawn, drawn_bare; /* from the worst view: the surface of the volume,
+                                                the mesh with its maps, and without */
+    cw_findings findings;                    /* points into this */
     cw_verdict verdicts[CW_MAX_VERDICTS];
     size_t verdict_count;
 } cli_mesh_study;

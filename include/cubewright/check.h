@@ -2,6 +2,7 @@
 #ifndef CUBEWRIGHT_CHECK_H
 #define CUBEWRIGHT_CHECK_H
 
+#include <cubewright/appearance.h>
 #include <cubewright/distance.h>
 #include <cubewright/print.h>
 #include <cubewright/quality.h>
@@ -46,6 +47,10 @@ typedef struct cw_findings {
     bool has_normals;       /* the mesh has normals */
     const char *file_fault; /* cw_mesh_file.fault of the file; NULL or "": none */
     size_t file_bytes;      /* of the file; 0: not known */
+    const cw_appearance *looks;      /* cw_appearance_measure() beside the reference, and */
+    const cw_appearance *bare_looks; /* the same without maps, if there are some */
+    double max_delta_e;              /* limit of their mean CIEDE2000; 0: none */
+    double min_psnr_db;              /* limit of their PSNR; 0: none */
 } cw_findings;
 
 enum { CW_BUDGET_LEVELS = 4 }; /* maximum of levels of detail in a budget */

@@ -2,6 +2,7 @@
 #ifndef CUBEWRIGHT_CUBEWRIGHT_H
 #define CUBEWRIGHT_CUBEWRIGHT_H
 
+#include <cubewright/appearance.h>
 #include <cubewright/atlas.h>
 #include <cubewright/bake.h>
 #include <cubewright/boolean.h>

@@ -4,6 +4,7 @@
 
 #include <cubewright/label_table.h>
 #include <cubewright/mesh.h>
+#include <cubewright/picture.h>
 #include <cubewright/spool.h>
 #include <cubewright/volume.h>
 
@@ -490,6 +491,20 @@ typedef struct cw_textures {
     float normal_scale, occlusion_strength; /* 0: 1 */
     bool repeats; /* the texture goes on beyond 0 and 1; default: it ends there */
 } cw_textures;
+
+/* Decodes a picture on a surface. PNG of any kind but palettes of colours becomes red, green, blue and
+ * opacity of 8 bits, values as they are.
+ * texture  borrowed
+ * desc     borrowed: max_bytes, no_sandbox, timeout_s and progress count; NULL means all defaults
+ * image    allocated and filled on success; free it with cw_image_free()
+ * Returns  CW_ERR_UNSUPPORTED  JPEG and other kinds; PNG is not in this build
+ *          CW_ERR_FORMAT       damaged, or larger than its bytes can hold
+ *          CW_ERR_LIMIT        more than 16384 texels along a side
+ *          CW_ERR_ARGUMENT     no bytes
+ *          CW_ERR_BACKEND, CW_ERR_CANCELLED, CW_ERR_NO_MEMORY */
+CW_NODISCARD CW_API cw_status cw_texture_decode(const cw_texture *texture,
+                                                const cw_mesh_read_desc *desc, cw_image *image,
+                                                cw_error *err);
 
 /* A named mesh, one of several in a file. */
 typedef struct cw_part {

@@ -13,6 +13,7 @@ threads at once, as long as none writes to its arrays.
 """
 
 from ._about import Feature, Format, features, formats, make
+from ._appearance import Appearance, LookDifference, appearance, appearance_view
 from ._atlas import Atlas, Baked, TextureDistance, atlas, bake_maps, bake_normals, bake_pictures, texture_distance
 from ._boolean import Combined, boolean
 from ._check import Check, Verdict, check, report
@@ -37,6 +38,7 @@ from ._write import Written, write
 __version__: str = _lib.cw_version().decode()
 
 __all__ = [
+    "Appearance",
     "Atlas",
     "Baked",
     "Check",
@@ -49,6 +51,7 @@ __all__ = [
     "Format",
     "Label",
     "LabelSurfaces",
+    "LookDifference",
     "Mesh",
     "Part",
     "Patch",
@@ -63,6 +66,8 @@ __all__ = [
     "Verdict",
     "Volume",
     "Written",
+    "appearance",
+    "appearance_view",
     "atlas",
     "bake_maps",
     "bake_normals",

@@ -174,9 +174,9 @@ def bake_pictures(
             decoded.append(image)
     out = (c.cw_image * len(PICTURES))()
     reporter.call(lib.cw_bake_pictures, byref(low), sources, len(parts), byref(desc), out, None)
-    baked = {use: copy_image(image) for use, image in zip(PICTURES, out) if image.pixels}
-    for image in out:
-        lib.cw_image_free(byref(image))
+    baked = {use: copy_image(picture) for use, picture in zip(PICTURES, out) if picture.pixels}
+    for picture in out:
+        lib.cw_image_free(byref(picture))
     return baked
 
 

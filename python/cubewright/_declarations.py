@@ -32,8 +32,8 @@ from ctypes import (
 )
 from typing import Any
 
-CW_LABELS_MAX = 255
 CW_CAMERA_TEXT = 1024
+CW_LABELS_MAX = 255
 CW_ANGLE_BINS = 18
 CW_ASPECT_BINS = 9
 CW_LENGTH_BINS = 20
@@ -46,6 +46,8 @@ CW_TRANSFER_TEXT = 20480
 CW_MAX_LIGHTS = 4
 CW_MAX_CLIPS = 12
 CW_MAX_SLICES = 4
+CW_APPEARANCE_MAX_SIZE = 4096
+CW_APPEARANCE_MAX_VIEWS = 64
 CW_CAP_ANGLE_DEG = 160.0
 CW_EXTRACT_MAX_SNAP = 0.5
 CW_FACE_COLORS = 'face_colors'
@@ -443,6 +445,48 @@ cw_feature._fields_ = [
 ]
 
 
+class cw_camera(Structure):
+    eye: Any
+    target: Any
+    up: Any
+    fov_deg: float
+    height_mm: float
+
+
+cw_camera._fields_ = [
+    ("eye", c_double * 3),
+    ("target", c_double * 3),
+    ("up", c_double * 3),
+    ("fov_deg", c_double),
+    ("height_mm", c_double),
+]
+
+
+class cw_fit_desc(Structure):
+    version: int
+    view: bytes | None
+    min: Any
+    max: Any
+    aspect: float
+    fov_deg: float
+    margin: float
+    azimuth_deg: float
+    elevation_deg: float
+
+
+cw_fit_desc._fields_ = [
+    ("version", c_uint32),
+    ("view", c_char_p),
+    ("min", c_double * 3),
+    ("max", c_double * 3),
+    ("aspect", c_double),
+    ("fov_deg", c_double),
+    ("margin", c_double),
+    ("azimuth_deg", c_double),
+    ("elevation_deg", c_double),
+]
+
+
 class cw_cells(Structure):
     points: Any
     count: int
@@ -697,6 +741,144 @@ cw_slab_sink._fields_ = [
 ]
 
 
+class cw_picture(Structure):
+    width: int
+    height: int
+    pixels: Any
+
+
+cw_picture._fields_ = [
+    ("width", c_size_t),
+    ("height", c_size_t),
+    ("pixels", POINTER(c_float)),
+]
+
+
+class cw_image(Structure):
+    width: int
+    height: int
+    pixels: Any
+    deep: Any
+
+
+cw_image._fields_ = [
+    ("width", c_size_t),
+    ("height", c_size_t),
+    ("pixels", POINTER(c_uint8)),
+    ("deep", POINTER(c_uint16)),
+]
+
+
+class cw_comparison(Structure):
+    pixels: int
+    rmse: float
+    max: float
+    bias: float
+    delta_e_mean: float
+    delta_e_p99: float
+    delta_e_max: float
+    ssim: float
+
+
+cw_comparison._fields_ = [
+    ("pixels", c_size_t),
+    ("rmse", c_double),
+    ("max", c_double),
+    ("bias", c_double),
+    ("delta_e_mean", c_double),
+    ("delta_e_p99", c_double),
+    ("delta_e_max", c_double),
+    ("ssim", c_double),
+]
+
+
+class cw_surface_look(Structure):
+    mesh: Any
+    normal_map: Any
+    color_map: Any
+    occlusion_map: Any
+
+
+cw_surface_look._fields_ = [
+    ("mesh", POINTER(cw_mesh)),
+    ("normal_map", POINTER(cw_image)),
+    ("color_map", POINTER(cw_image)),
+    ("occlusion_map", POINTER(cw_image)),
+]
+
+
+class cw_appearance_desc(Structure):
+    version: int
+    views: int
+    size: int
+    threads: int
+    progress: Any
+
+
+cw_appearance_desc._fields_ = [
+    ("version", c_uint32),
+    ("views", c_uint32),
+    ("size", c_uint32),
+    ("threads", c_int),
+    ("progress", cw_progress),
+]
+
+
+class cw_look_difference(Structure):
+    pixels: int
+    shown_by_one: int
+    rmse: float
+    psnr_db: float
+    delta_e: float
+    rmse_both: float
+    psnr_both_db: float
+    delta_e_both: float
+
+
+cw_look_difference._fields_ = [
+    ("pixels", c_size_t),
+    ("shown_by_one", c_size_t),
+    ("rmse", c_double),
+    ("psnr_db", c_double),
+    ("delta_e", c_double),
+    ("rmse_both", c_double),
+    ("psnr_both_db", c_double),
+    ("delta_e_both", c_double),
+]
+
+
+class cw_appearance_view(Structure):
+    camera: Any
+    azimuth_deg: float
+    elevation_deg: float
+
+
+cw_appearance_view._fields_ = [
+    ("camera", cw_camera),
+    ("azimuth_deg", c_double),
+    ("elevation_deg", c_double),
+]
+
+
+class cw_appearance(Structure):
+    views: int
+    size: int
+    worst: int
+    all: Any
+    view: Any
+    place: Any
+
+
+cw_appearance._fields_ = [
+    ("views", c_uint32),
+    ("size", c_uint32),
+    ("worst", c_uint32),
+    ("all", cw_look_difference),
+    ("view", cw_look_difference * 64),
+    ("place", cw_appearance_view * 64),
+]
+
+
 class cw_atlas_desc(Structure):
     version: int
     size: int
@@ -755,57 +937,6 @@ cw_texture_distance._fields_ = [
     ("max_mm", c_double),
     ("mean_mm", c_double),
     ("side_mm", c_double),
-]
-
-
-class cw_picture(Structure):
-    width: int
-    height: int
-    pixels: Any
-
-
-cw_picture._fields_ = [
-    ("width", c_size_t),
-    ("height", c_size_t),
-    ("pixels", POINTER(c_float)),
-]
-
-
-class cw_image(Structure):
-    width: int
-    height: int
-    pixels: Any
-    deep: Any
-
-
-cw_image._fields_ = [
-    ("width", c_size_t),
-    ("height", c_size_t),
-    ("pixels", POINTER(c_uint8)),
-    ("deep", POINTER(c_uint16)),
-]
-
-
-class cw_comparison(Structure):
-    pixels: int
-    rmse: float
-    max: float
-    bias: float
-    delta_e_mean: float
-    delta_e_p99: float
-    delta_e_max: float
-    ssim: float
-
-
-cw_comparison._fields_ = [
-    ("pixels", c_size_t),
-    ("rmse", c_double),
-    ("max", c_double),
-    ("bias", c_double),
-    ("delta_e_mean", c_double),
-    ("delta_e_p99", c_double),
-    ("delta_e_max", c_double),
-    ("ssim", c_double),
 ]
 
 
@@ -923,48 +1054,6 @@ cw_boolean_facts._fields_ = [
     ("volume_mm3", c_double * 2),
     ("negative_regions", c_size_t),
     ("negative_mm3", c_double),
-]
-
-
-class cw_camera(Structure):
-    eye: Any
-    target: Any
-    up: Any
-    fov_deg: float
-    height_mm: float
-
-
-cw_camera._fields_ = [
-    ("eye", c_double * 3),
-    ("target", c_double * 3),
-    ("up", c_double * 3),
-    ("fov_deg", c_double),
-    ("height_mm", c_double),
-]
-
-
-class cw_fit_desc(Structure):
-    version: int
-    view: bytes | None
-    min: Any
-    max: Any
-    aspect: float
-    fov_deg: float
-    margin: float
-    azimuth_deg: float
-    elevation_deg: float
-
-
-cw_fit_desc._fields_ = [
-    ("version", c_uint32),
-    ("view", c_char_p),
-    ("min", c_double * 3),
-    ("max", c_double * 3),
-    ("aspect", c_double),
-    ("fov_deg", c_double),
-    ("margin", c_double),
-    ("azimuth_deg", c_double),
-    ("elevation_deg", c_double),
 ]
 
 
@@ -1504,6 +1593,10 @@ class cw_findings(Structure):
     has_normals: bool
     file_fault: bytes | None
     file_bytes: int
+    looks: Any
+    bare_looks: Any
+    max_delta_e: float
+    min_psnr_db: float
 
 
 cw_findings._fields_ = [
@@ -1523,6 +1616,10 @@ cw_findings._fields_ = [
     ("has_normals", c_bool),
     ("file_fault", c_char_p),
     ("file_bytes", c_size_t),
+    ("looks", POINTER(cw_appearance)),
+    ("bare_looks", POINTER(cw_appearance)),
+    ("max_delta_e", c_double),
+    ("min_psnr_db", c_double),
 ]
 
 
@@ -3637,6 +3734,22 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "cw_status_name": (c_char_p, [c_int]),
     "cw_status_text": (c_char_p, [c_int]),
     "cw_features": (POINTER(cw_feature), [POINTER(c_size_t)]),
+    "cw_view_name": (c_char_p, [c_size_t]),
+    "cw_camera_fit": (c_int, [POINTER(cw_fit_desc), POINTER(cw_camera), POINTER(cw_error)]),
+    "cw_camera_axes": (c_int, [POINTER(cw_camera), POINTER(c_double), POINTER(c_double), POINTER(c_double), POINTER(cw_error)]),
+    "cw_camera_turn": (c_int, [POINTER(cw_camera), POINTER(c_double), c_double, POINTER(cw_error)]),
+    "cw_camera_zoom": (c_int, [POINTER(cw_camera), c_double, POINTER(cw_error)]),
+    "cw_camera_dolly": (c_int, [POINTER(cw_camera), c_double, POINTER(cw_error)]),
+    "cw_camera_orbit": (c_int, [POINTER(cw_camera), c_double, c_double, POINTER(cw_error)]),
+    "cw_camera_roll": (c_int, [POINTER(cw_camera), c_double, POINTER(cw_error)]),
+    "cw_camera_pan": (c_int, [POINTER(cw_camera), c_size_t, c_double, c_double, POINTER(cw_error)]),
+    "cw_camera_project": (c_bool, [POINTER(cw_camera), c_size_t, c_size_t, POINTER(c_double), POINTER(c_double), POINTER(c_double)]),
+    "cw_camera_ray": (c_int, [POINTER(cw_camera), c_size_t, c_size_t, POINTER(c_double), POINTER(c_double), POINTER(c_double), POINTER(cw_error)]),
+    "cw_camera_path": (c_int, [POINTER(cw_camera), POINTER(c_double), c_size_t, c_double, POINTER(cw_camera), POINTER(cw_error)]),
+    "cw_camera_read": (c_int, [c_char_p, POINTER(cw_camera), POINTER(cw_error)]),
+    "cw_camera_write": (c_int, [c_char_p, POINTER(cw_camera), POINTER(cw_error)]),
+    "cw_camera_parse": (c_int, [c_char_p, POINTER(cw_camera), POINTER(cw_error)]),
+    "cw_camera_format": (c_int, [POINTER(cw_camera), POINTER(c_char), POINTER(cw_error)]),
     "cw_type_size": (c_size_t, [c_int]),
     "cw_type_name": (c_char_p, [c_int]),
     "cw_volume_alloc": (c_int, [POINTER(cw_volume), c_int, POINTER(c_size_t), c_size_t, c_size_t, POINTER(cw_error)]),
@@ -3674,10 +3787,6 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "cw_mesh_drop_volumes": (c_int, [POINTER(cw_mesh), c_double, POINTER(cw_drop_counts), POINTER(cw_error)]),
     "cw_mesh_keep_largest": (c_int, [POINTER(cw_mesh), c_size_t, POINTER(cw_drop_counts), POINTER(cw_error)]),
     "cw_mesh_drop_distant": (c_int, [POINTER(cw_mesh), POINTER(c_float), c_double, POINTER(cw_drop_counts), POINTER(c_double), POINTER(cw_error)]),
-    "cw_mesh_atlas": (c_int, [POINTER(cw_mesh), POINTER(cw_atlas_desc), POINTER(cw_atlas_facts), POINTER(cw_error)]),
-    "cw_meshes_atlas": (c_int, [POINTER(POINTER(cw_mesh)), POINTER(c_double), c_size_t, POINTER(cw_atlas_desc), POINTER(cw_atlas_facts), POINTER(cw_error)]),
-    "cw_mesh_split_seams": (c_int, [POINTER(cw_mesh), POINTER(cw_error)]),
-    "cw_mesh_texture_distance": (c_int, [POINTER(cw_mesh), POINTER(cw_mesh), c_int, POINTER(cw_texture_distance), POINTER(cw_error)]),
     "cw_picture_alloc": (c_int, [POINTER(cw_picture), c_size_t, c_size_t, POINTER(cw_error)]),
     "cw_picture_free": (None, [POINTER(cw_picture)]),
     "cw_image_alloc": (c_int, [POINTER(cw_image), c_size_t, c_size_t, POINTER(cw_error)]),
@@ -3691,28 +3800,19 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "cw_image_encode": (c_int, [POINTER(cw_image), c_bool, POINTER(POINTER(c_uint8)), POINTER(c_size_t), POINTER(cw_error)]),
     "cw_image_decode": (c_int, [POINTER(c_uint8), c_size_t, POINTER(cw_image), POINTER(cw_error)]),
     "cw_bytes_free": (None, [POINTER(c_uint8)]),
+    "cw_appearance_measure": (c_int, [POINTER(cw_surface_look), c_size_t, POINTER(cw_surface_look), c_size_t, POINTER(cw_appearance_desc), POINTER(cw_appearance), POINTER(cw_appearance), POINTER(cw_error)]),
+    "cw_appearance_find_view": (c_int, [POINTER(cw_surface_look), c_size_t, c_uint32, c_uint32, POINTER(cw_appearance_view), POINTER(cw_error)]),
+    "cw_appearance_draw": (c_int, [POINTER(cw_surface_look), c_size_t, POINTER(cw_camera), POINTER(cw_appearance_desc), POINTER(cw_image), POINTER(cw_error)]),
+    "cw_mesh_atlas": (c_int, [POINTER(cw_mesh), POINTER(cw_atlas_desc), POINTER(cw_atlas_facts), POINTER(cw_error)]),
+    "cw_meshes_atlas": (c_int, [POINTER(POINTER(cw_mesh)), POINTER(c_double), c_size_t, POINTER(cw_atlas_desc), POINTER(cw_atlas_facts), POINTER(cw_error)]),
+    "cw_mesh_split_seams": (c_int, [POINTER(cw_mesh), POINTER(cw_error)]),
+    "cw_mesh_texture_distance": (c_int, [POINTER(cw_mesh), POINTER(cw_mesh), c_int, POINTER(cw_texture_distance), POINTER(cw_error)]),
     "cw_map_name": (c_char_p, [c_int]),
     "cw_bake_normals": (c_int, [POINTER(cw_mesh), POINTER(cw_mesh), POINTER(cw_bake_desc), POINTER(cw_image), POINTER(cw_bake_facts), POINTER(cw_error)]),
     "cw_bake_maps": (c_int, [POINTER(cw_mesh), POINTER(cw_mesh), POINTER(cw_bake_desc), POINTER(cw_image), POINTER(cw_bake_facts), POINTER(cw_error)]),
     "cw_bake_meshes": (c_int, [POINTER(POINTER(cw_mesh)), c_size_t, POINTER(cw_mesh), POINTER(cw_bake_desc), POINTER(cw_image), POINTER(cw_bake_facts), POINTER(cw_error)]),
     "cw_bake_pictures": (c_int, [POINTER(cw_mesh), POINTER(cw_bake_source), c_size_t, POINTER(cw_bake_desc), POINTER(cw_image), POINTER(cw_bake_facts), POINTER(cw_error)]),
     "cw_mesh_boolean": (c_int, [POINTER(POINTER(cw_mesh)), c_size_t, POINTER(cw_boolean_desc), POINTER(cw_mesh), POINTER(cw_boolean_facts), POINTER(cw_error)]),
-    "cw_view_name": (c_char_p, [c_size_t]),
-    "cw_camera_fit": (c_int, [POINTER(cw_fit_desc), POINTER(cw_camera), POINTER(cw_error)]),
-    "cw_camera_axes": (c_int, [POINTER(cw_camera), POINTER(c_double), POINTER(c_double), POINTER(c_double), POINTER(cw_error)]),
-    "cw_camera_turn": (c_int, [POINTER(cw_camera), POINTER(c_double), c_double, POINTER(cw_error)]),
-    "cw_camera_zoom": (c_int, [POINTER(cw_camera), c_double, POINTER(cw_error)]),
-    "cw_camera_dolly": (c_int, [POINTER(cw_camera), c_double, POINTER(cw_error)]),
-    "cw_camera_orbit": (c_int, [POINTER(cw_camera), c_double, c_double, POINTER(cw_error)]),
-    "cw_camera_roll": (c_int, [POINTER(cw_camera), c_double, POINTER(cw_error)]),
-    "cw_camera_pan": (c_int, [POINTER(cw_camera), c_size_t, c_double, c_double, POINTER(cw_error)]),
-    "cw_camera_project": (c_bool, [POINTER(cw_camera), c_size_t, c_size_t, POINTER(c_double), POINTER(c_double), POINTER(c_double)]),
-    "cw_camera_ray": (c_int, [POINTER(cw_camera), c_size_t, c_size_t, POINTER(c_double), POINTER(c_double), POINTER(c_double), POINTER(cw_error)]),
-    "cw_camera_path": (c_int, [POINTER(cw_camera), POINTER(c_double), c_size_t, c_double, POINTER(cw_camera), POINTER(cw_error)]),
-    "cw_camera_read": (c_int, [c_char_p, POINTER(cw_camera), POINTER(cw_error)]),
-    "cw_camera_write": (c_int, [c_char_p, POINTER(cw_camera), POINTER(cw_error)]),
-    "cw_camera_parse": (c_int, [c_char_p, POINTER(cw_camera), POINTER(cw_error)]),
-    "cw_camera_format": (c_int, [POINTER(cw_camera), POINTER(c_char), POINTER(cw_error)]),
     "cw_distance_to_field": (c_int, [POINTER(cw_mesh), POINTER(cw_volume), POINTER(cw_field_distance_desc), POINTER(cw_distance), POINTER(c_float), POINTER(cw_error)]),
     "cw_distance_to_mesh": (c_int, [POINTER(cw_mesh), POINTER(cw_mesh), POINTER(cw_mesh_distance_desc), POINTER(cw_distance), POINTER(c_float), POINTER(cw_error)]),
     "cw_mesh_compare": (c_int, [POINTER(cw_mesh), POINTER(cw_mesh), POINTER(cw_mesh_distance_desc), POINTER(cw_mesh_comparison), POINTER(cw_error)]),
@@ -3824,6 +3924,7 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "cw_label_table_beside": (c_int, [c_char_p, POINTER(POINTER(c_char)), POINTER(cw_error)]),
     "cw_raw_layout_parse": (c_int, [c_char_p, POINTER(cw_raw_layout), POINTER(cw_error)]),
     "cw_mesh_read": (c_int, [c_char_p, POINTER(cw_mesh_read_desc), POINTER(cw_mesh), POINTER(cw_mesh_file), POINTER(cw_error)]),
+    "cw_texture_decode": (c_int, [POINTER(cw_texture), POINTER(cw_mesh_read_desc), POINTER(cw_image), POINTER(cw_error)]),
     "cw_parts_read": (c_int, [c_char_p, POINTER(cw_mesh_read_desc), POINTER(POINTER(cw_part)), POINTER(c_size_t), POINTER(cw_mesh_file), POINTER(cw_error)]),
     "cw_parts_free": (None, [POINTER(cw_part), c_size_t]),
     "cw_volume_write": (c_int, [c_char_p, POINTER(cw_volume), POINTER(cw_write_desc), POINTER(cw_error)]),

@@ -397,6 +397,32 @@ static void judge_distance(bench *b, const char *name, const char *other, const 
         back->max_mm, back->rms_mm, back->where[0], back->where[1], back->where[2]);
 }
 
+/* Judges pictures of the mesh beside the same pictures of the reference. */
+static void judge_looks(bench *b)
+{
+    const cw_findings *f = b->f;
+    const cw_appearance *looks = f->looks;
+    if (!looks)
+        return;
+    const bool is_limited = f->max_delta_e > 0 || f->min_psnr_db > 0;
+    const bool holds = !(f->max_delta_e > 0 && looks->all.delta_e > f->max_delta_e) &&
+                       !(f->min_psnr_db > 0 && looks->all.psnr_db < f->min_psnr_db);
+    cw_verdict *v = add_verdict(b, "looks",
+                                !is_limited ? CW_GRADE_NOTE
+                                : holds     ? CW_GRADE_OK
+                                            : CW_GRADE_FAIL,
+                                looks->all.delta_e);
+    char bare[64] = "", psnr[32] = "equal";
+    if (f->bare_looks)
+        snprintf(bare, sizeof bare, " (%.2f without maps)", f->bare_looks->all.delta_e);
+    if (isfinite(looks->all.psnr_db))
+        snprintf(psnr, sizeof psnr, "PSNR %.2f dB", looks->all.psnr_db);
+    say_finding(v, "%s, CIEDE2000 %.2f%s; inside both outlines %.2f; %u views", psnr,
+                looks->all.delta_e, bare, looks->all.delta_e_both, looks->views);
+    if (v->grade == CW_GRADE_FAIL)
+        v->advice = "keep more triangles, or bake a normal map of the reference";
+}
+
 /* Components that were left out, such as specks: no distance of what is there. */
 static void judge_missing(bench *b)
 {
@@ -516,6 +542,7 @@ size_t cw_check_judge(const cw_findings *findings, cw_profile profile,
                    findings->from_field);
     judge_distance(&b, "to reference", "the reference", findings->to_reference, "the reference",
                    findings->from_reference);
+    judge_looks(&b);
     judge_agreement(&b);
     sort_verdicts(verdicts, b.count);
     return b.count;

@@ -238,6 +238,33 @@ class Coordinates(Case):
         with self.fails(cw.Status.CANCELLED):
             cw.bake_normals(low, low, size=64, progress=lambda *_: False)
 
+    def test_looks_are_compared(self):
+        ball = cw.extract(make_ball(), 0)
+        same = cw.appearance(ball, ball, size=64, threads=2)
+        self.assertEqual((same.with_maps.rmse, same.with_maps.psnr, same.with_maps.delta_e), (0, np.inf, 0))
+        self.assertEqual((same.size, len(same.views), same.with_maps), (64, 8, same.without_maps))
+        low = cw.atlas(ball, size=128).mesh
+        bent = np.full((128, 128, 4), (200, 128, 235, 255), np.uint8)
+        mapped = cw.Part("low", low, normal_map=bent)
+        found = cw.appearance(ball, [mapped], views=3, size=64)
+        self.assertGreater(found.with_maps.delta_e, 5)
+        self.assertEqual(found.without_maps.rmse, 0)
+        self.assertEqual(found.views[found.worst].rmse, max(v.rmse for v in found.views))
+        self.assertEqual(sum(v.pixels for v in found.views), found.with_maps.pixels)
+        self.assertEqual(len(found.places), 3)
+        self.assertAlmostEqual(found.places[1][0], 137.508, 2)
+        self.assertAlmostEqual(found.places[1][1], 0)
+        picture = cw.appearance_view(ball, mapped, 2, views=3, size=64)
+        self.assertEqual((picture.shape, picture[0, 0].tolist()), ((64, 64, 4), [0, 0, 0, 0]))
+        self.assertEqual(picture[32, 32, 3], 255)
+        for wrong in (lambda: cw.appearance(ball, ball, views=65), lambda: cw.appearance(ball, ball, size=8)):
+            self.assertRaises(ValueError, wrong)
+        self.assertRaises(TypeError, lambda: cw.appearance("ball", ball))
+        with self.fails(cw.Status.ARGUMENT):
+            cw.appearance(ball, cw.Part("bare", ball, normal_map=bent))
+        with self.fails(cw.Status.CANCELLED):
+            cw.appearance(ball, ball, size=64, progress=lambda *_: False)
+
     def test_small_handles_are_closed(self):
         noise = cw.make("sphere", dims=32, noise=6)
         mesh = cw.extract(noise, 0, largest=1, fill_voids=True)

@@ -28,6 +28,24 @@ if python3 -c 'import xml.dom.minidom' 2>/dev/null; then
 fi
 sh -c "$(sed -n 's/^  "command": "\(.*\)",$/\1/p' ball.json) -q" && echo "its command runs"
 
+# How it looks: figures and pictures beside the surface, as check has them; with a map in three pictures.
+grep -o 'alt="[^"]*worst view"' ball.html
+cubewright extract sphere.nrrd --iso 3 -o surface.ply -q
+cubewright check ball.stl --reference surface.ply --looks none --json looks.json -q
+for f in ball looks; do sed -n '/^  "looks"/,/^  }/p' $f.json >$f.looks; done
+cmp ball.looks looks.looks && echo "looks: as of check"
+if cubewright version --features | grep -q '^glb *yes'; then
+    cubewright make sphere -o coarse.nrrd --dims 9 -q
+    cubewright extract coarse.nrrd --iso 3 -o coarse.ply -q
+    cubewright uv coarse.ply --bake surface.ply --atlas 256 -o map.glb -q
+    cubewright report map.glb --source sphere.nrrd --iso 3 -o map.html --json map.json -q
+    grep -c -e 'alt="The mesh without its maps, worst view"' -e '>with its maps<' map.html
+    grep -o '"without_maps"' map.json
+else
+    echo 2
+    echo '"without_maps"'
+fi
+
 # A mesh of filtered voxels has no level of these: that is said, unless the filter is named.
 cubewright make gyroid -o noisy.nrrd --dims 40 --noise 0.3 --seed 2 -q
 cubewright extract noisy.nrrd --iso 0.2 --denoise gauss:1vox -o filtered.stl -q

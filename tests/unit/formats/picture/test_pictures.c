@@ -229,6 +229,96 @@ static void palettes_are_greys_or_numbers(void **state)
     check_told("a.png", 0, "a pixel has the colour");
 }
 
+/* Decodes the bytes of a file as a texture. */
+static cw_status decode(const char *name, cw_image *image, cw_error *err)
+{
+    size_t size;
+    char *all = test_file_read(test_path(name), &size);
+    const cw_texture texture = {.bytes = (const uint8_t *)all, .size = size};
+    const cw_status st = cw_texture_decode(&texture, NULL, image, err);
+    free(all);
+    return st;
+}
+
+static void textures_have_four_bytes_a_texel(void **state)
+{
+    (void)state;
+    for (size_t n = 0; n < 2 * sizeof kinds / sizeof *kinds; n++) {
+        const size_t k = n / 2, channels = (size_t)kinds[k].channels;
+        const png p = {.bits = kinds[k].bits,
+                       .color = kinds[k].color,
+                       .channels = kinds[k].channels,
+                       .interlaced = n % 2,
+                       .sample = kinds[k].sample};
+        cw_image image;
+        cw_error err = {0};
+        put_png("a.png", &p);
+        assert_ok(decode("a.png", &image, &err), err);
+        assert_true(image.width == COLUMNS && image.height == ROWS);
+        for (size_t i = 0; i < (size_t)COLUMNS * ROWS * 4; i++) {
+            const size_t c = i % 4, x = i / 4 % COLUMNS, y = i / 4 / COLUMNS;
+            const size_t from = c == 3 ? channels - 1 : channels < 3 ? 0 : c;
+            const unsigned value = p.sample(x, y, from) * kinds[k].scale;
+            const double wide = p.bits == 16 ? value / 257.0 : value;
+            assert_near(image.pixels[i], c == 3 && channels % 2 ? 255 : wide, 0.5001);
+        }
+        cw_image_free(&image);
+    }
+}
+
+static void textures_that_cannot_be_decoded_are_told(void **state)
+{
+    (void)state;
+    static const unsigned char colors[6] = {255, 0, 0, 0, 0, 255};
+    static const uint8_t jpeg[] = {0xff, 0xd8, 0xff, 0xe0}, other[] = "RIFF....WEBP";
+    cw_image image;
+    cw_error err = {0};
+    const png palette = {.bits = 1,
+                         .color = 3,
+                         .channels = 1,
+                         .colors = 2,
+                         .palette = colors,
+                         .sample = sample_1};
+    put_png("a.png", &palette);
+    assert_int_equal(decode("a.png", &image, &err), CW_ERR_UNSUPPORTED);
+    assert_non_null(strstr(err.message, "palette"));
+    const cw_texture none = {0}, of_jpeg = {jpeg, sizeof jpeg},
+                     of_other = {other, sizeof other};
+    assert_fails(cw_texture_decode(&none, NULL, &image, &err), CW_ERR_ARGUMENT, "no picture",
+                 err);
+    assert_fails(cw_texture_decode(&of_jpeg, NULL, &image, &err), CW_ERR_UNSUPPORTED, "JPEG",
+                 err);
+    assert_fails(cw_texture_decode(&of_other, NULL, &image, &err), CW_ERR_UNSUPPORTED, "no PNG",
+                 err);
+    put_png("a.png", &(png){.bits = 8, .color = 2, .channels = 3, .sample = sample_8});
+    size_t size;
+    char *all = test_file_read(test_path("a.png"), &size);
+    for (size_t cut = 8; cut + 12 < size; cut += 7) { /* the last chunk may be missing */
+        const cw_texture part = {(const uint8_t *)all, cut};
+        assert_int_equal(cw_texture_decode(&part, NULL, &image, &err), CW_ERR_FORMAT);
+        assert_null(image.pixels);
+    }
+    memcpy(all + 16, "\0\0\x4e\x20\0\0\x4e\x20", 8); /* 20000 x 20000 */
+    const cw_texture huge = {(const uint8_t *)all, size};
+    assert_true(cw_texture_decode(&huge, NULL, &image, &err) != CW_OK && !image.pixels);
+    for (long n = 0;; n++) {
+        put_png("a.png", &(png){.bits = 16, .color = 6, .channels = 4, .sample = sample_16});
+        char *whole = test_file_read(test_path("a.png"), &size);
+        const cw_texture texture = {(const uint8_t *)whole, size};
+        cwi_alloc_fail_after(n);
+        const cw_status st =
+            cw_texture_decode(&texture, &(cw_mesh_read_desc){.no_sandbox = true}, &image, &err);
+        free(whole);
+        if (!cwi_alloc_fail_after(-1)) {
+            assert_ok(st, err);
+            cw_image_free(&image);
+            break;
+        }
+        assert_int_equal(st, CW_ERR_NO_MEMORY);
+    }
+    free(all);
+}
+
 /* --- BMP ---------------------------------------------------------------------------------- */
 
 static void put_small(bytes *b, uint32_t value, int size)
@@ -436,6 +526,8 @@ int main(void)
     static const struct CMUnitTest tests[] = {
         TEST(png_of_every_kind_gives_its_samples),
         TEST(palettes_are_greys_or_numbers),
+        TEST(textures_have_four_bytes_a_texel),
+        TEST(textures_that_cannot_be_decoded_are_told),
         TEST(bmp_of_every_kind_gives_its_samples),
         TEST(files_are_slices_in_the_order_of_their_numbers),
         TEST(damaged_files_are_told),

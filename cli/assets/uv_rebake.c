@@ -1,5 +1,5 @@
 /* Carries pictures of a textured mesh over to another texture. */
-#include "cli/commands/uv_rebake.h"
+#include "cli/assets/uv_rebake.h"
 
 #include "cli/framework/console.h"
 #include "core/base/memory.h"

@@ -1,6 +1,6 @@
 /* The option --rebake of the command uv: pictures of a textured mesh, carried over to another texture. */
-#ifndef CLI_COMMANDS_UV_REBAKE_H
-#define CLI_COMMANDS_UV_REBAKE_H
+#ifndef CLI_ASSETS_UV_REBAKE_H
+#define CLI_ASSETS_UV_REBAKE_H
 
 #include "cli/inputs/mesh_input.h"
 
