@@ -14,11 +14,18 @@
 
 enum {
     CHUNK = 256,
-    SAMPLES_PER_TRIANGLE = 4, /* of the full mesh, at least */
+    SAMPLES_PER_TRIANGLE = 4, /* of the full mesh, up to the next */
+    MAX_SAMPLES = 1 << 17,    /* of all triangles, beside their corners */
     MAX_STEPS = 64,           /* along a side */
+    FIRST_VISITS = 4096,      /* triangles near in space */
     MAX_VISITS =
         1 << 14 /* triangles for a point: where more lie on one place, a bound is found */
 };
+
+static const uint32_t NO_TRIANGLE = UINT32_MAX;
+
+/* How much farther than the nearest triangle others may be, to be looked at first. */
+static const double AROUND = 1.5;
 
 typedef struct chunk_facts {
     size_t samples;
@@ -27,11 +34,12 @@ typedef struct chunk_facts {
 
 typedef struct comparison {
     const cw_mesh *mesh, *full;
-    cw_mesh flat; /* full's triangles in the texture, scaled to mm, three vertices each */
-    cwi_boxes tree;
-    double scale;      /* mm for the texture's side */
-    double sample_mm2; /* of the mesh, for each sample */
-    double shift[3];   /* from mesh's origin to that of full */
+    cw_mesh flat;   /* full's triangles in the texture, scaled to mm, three vertices each */
+    cwi_boxes tree; /* of flat */
+    cwi_boxes space_tree; /* of full */
+    double scale;         /* mm for the texture's side */
+    double sample_mm2;    /* of the mesh, for each sample */
+    double shift[3];      /* from mesh's origin to that of full */
     chunk_facts *chunks;
 } comparison;
 
@@ -42,6 +50,7 @@ typedef struct place_search {
     const comparison *c;
     const double *point; /* in space and in the texture */
     double best_sq;
+    uint32_t triangle; /* that is so near */
     size_t visits;
 } place_search;
 
@@ -88,11 +97,10 @@ static double triangle_distance_sq(const double corner[3][DIMENSIONS], const dou
                 fmin(segment_distance_sq(ap, ac), segment_distance_sq(bp, bc)));
 }
 
-static void measure_place(void *context, size_t slot, double *distance_sq)
+/* Measures the distance from a triangle of the full mesh, and keeps the nearest one. */
+static void look_at(place_search *s, uint32_t t)
 {
-    place_search *s = context;
     const comparison *c = s->c;
-    const uint32_t t = c->tree.order[slot];
     const float *flat = c->flat.positions + 9 * (size_t)t;
     double corner[3][DIMENSIONS];
     for (size_t k = 0; k < 3; k++) {
@@ -100,15 +108,47 @@ static void measure_place(void *context, size_t slot, double *distance_sq)
         corner[k][IN_TEXTURE] = (double)flat[3 * k];
         corner[k][IN_TEXTURE + 1] = (double)flat[3 * k + 1];
     }
-    s->best_sq =
-        fmin(s->best_sq, triangle_distance_sq((const double(*)[DIMENSIONS])corner, s->point));
+    const double distance_sq =
+        triangle_distance_sq((const double(*)[DIMENSIONS])corner, s->point);
+    if (!(distance_sq < s->best_sq))
+        return;
+    s->best_sq = distance_sq;
+    s->triangle = t;
+}
+
+/* Looks at triangles near a point in space: one of them is near in the texture, too, as a rule. */
+static void measure_space(void *context, size_t slot, double *distance_sq)
+{
+    place_search *s = context;
+    look_at(s, s->c->space_tree.order[slot]);
+    if (++s->visits > FIRST_VISITS)
+        *distance_sq = 0;
+}
+
+/* Looks at the triangles that are about as near in space as the nearest one: those on both sides of a seam. */
+static void look_around(place_search *s)
+{
+    const comparison *c = s->c;
+    const cwi_closest nearest = cwi_closest_find(c->full, &c->space_tree, s->point);
+    const double reach = AROUND * cwi_distance(nearest.point, s->point) + sqrt(c->sample_mm2);
+    double reach_sq = reach * reach;
+    look_at(s, (uint32_t)nearest.triangle);
+    cwi_boxes_nearest(&c->space_tree, s->point, measure_space, s, &reach_sq);
+    s->visits = 0;
+}
+
+static void measure_place(void *context, size_t slot, double *distance_sq)
+{
+    place_search *s = context;
+    look_at(s, s->c->tree.order[slot]);
     *distance_sq = ++s->visits > MAX_VISITS ? 0 : s->best_sq;
 }
 
+/* near: a triangle of the full mesh that may be near, or NO_TRIANGLE; set to the nearest one */
 static double measure_sample(const comparison *c, size_t t, const double weights[3],
-                             const cw_attribute *uv)
+                             const cw_attribute *uv, uint32_t *near)
 {
-    double point[DIMENSIONS] = {0}, distance_sq = INFINITY;
+    double point[DIMENSIONS] = {0};
     for (size_t k = 0; k < 3; k++) {
         const float *place = place_of(uv, c->mesh, 3 * t + k),
                     *p = cwi_mesh_point(c->mesh, t, k);
@@ -118,14 +158,19 @@ static double measure_sample(const comparison *c, size_t t, const double weights
             point[IN_TEXTURE + a] += weights[k] * c->scale * (double)place[a];
     }
     const double place[3] = {point[IN_TEXTURE], point[IN_TEXTURE + 1], 0};
-    place_search s = {c, point, INFINITY, 0};
+    place_search s = {c, point, INFINITY, *near, 0};
+    if (*near != NO_TRIANGLE)
+        look_at(&s, *near);
+    look_around(&s);
+    double distance_sq = s.best_sq;
     cwi_boxes_nearest(&c->tree, place, measure_place, &s, &distance_sq);
+    *near = s.triangle;
     return sqrt(s.best_sq);
 }
 
 /* Samples a triangle evenly, and at its corners. */
 static void measure_triangle(const comparison *c, size_t t, const cw_attribute *uv,
-                             chunk_facts *facts)
+                             uint32_t *near, chunk_facts *facts)
 {
     const double area = cwi_mesh_area(c->mesh, t);
     const double steps = ceil(sqrt(2 * area / c->sample_mm2));
@@ -134,13 +179,13 @@ static void measure_triangle(const comparison *c, size_t t, const cw_attribute *
     size_t count = 0;
     for (int k = 0; k < 3; k++) {
         const double corner[3] = {k == 0, k == 1, k == 2};
-        facts->max = fmax(facts->max, measure_sample(c, t, corner, uv));
+        facts->max = fmax(facts->max, measure_sample(c, t, corner, uv, near));
     }
     for (int i = 0; i < n; i++)
         for (int j = 0; i + j < n; j++, count++) {
             const double a = (i + 1.0 / 3) / n, b = (j + 1.0 / 3) / n;
             const double distance =
-                measure_sample(c, t, (const double[3]){a, b, 1 - a - b}, uv);
+                measure_sample(c, t, (const double[3]){a, b, 1 - a - b}, uv, near);
             facts->max = fmax(facts->max, distance);
             sum += distance;
         }
@@ -153,8 +198,9 @@ static void measure_chunk(void *context, size_t n)
 {
     comparison *c = context;
     const cw_attribute *uv = cwi_texture_of(c->mesh);
+    uint32_t near = NO_TRIANGLE;
     for (size_t t = n * CHUNK; t < (n + 1) * CHUNK && t < c->mesh->triangle_count; t++)
-        measure_triangle(c, t, uv, &c->chunks[n]);
+        measure_triangle(c, t, uv, &near, &c->chunks[n]);
 }
 
 /* Returns the area of a mesh, and sets that in its texture. */
@@ -191,6 +237,8 @@ static cw_status lay_flat(comparison *c, cw_error *err)
             return cwi_fail(err, CW_ERR_ARGUMENT,
                             "texture coordinates of triangle %zu are not finite", n / 3);
     }
+    if (st == CW_OK)
+        st = cwi_closest_build(full, &c->space_tree, err);
     return st == CW_OK ? cwi_closest_build(&c->flat, &c->tree, err) : st;
 }
 
@@ -198,7 +246,8 @@ static cw_status measure(comparison *c, int threads, cw_texture_distance *facts,
 {
     const cw_mesh *m = c->mesh;
     const size_t chunks = (m->triangle_count + CHUNK - 1) / CHUNK,
-                 wanted = SAMPLES_PER_TRIANGLE * c->full->triangle_count;
+                 all = SAMPLES_PER_TRIANGLE * c->full->triangle_count,
+                 wanted = all < MAX_SAMPLES ? all : MAX_SAMPLES;
     double in_texture, full_area = find_areas(c->full, &in_texture);
     *facts = (cw_texture_distance){0};
     if (!(in_texture > 0) || !(full_area > 0))
@@ -239,6 +288,7 @@ cw_status cw_mesh_texture_distance(const cw_mesh *mesh, const cw_mesh *full, int
         st = measure(&c, threads, facts, err);
     cw_mesh_free(&c.flat);
     cwi_boxes_free(&c.tree);
+    cwi_boxes_free(&c.space_tree);
     cwi_free(c.chunks);
     return st;
 }

@@ -122,22 +122,33 @@ void TextureCharts::ends_of(uint32_t outline, Place &a, Place &b) const
     b = corners[next(sides[outline])].place;
 }
 
-void TextureCharts::build_outlines()
+// Puts the sides that are left into a tree. Returns false where one is not finite.
+bool TextureCharts::plant_outlines()
 {
-    std::vector<uint32_t> numbers(sides.size());
-    std::vector<Box> boxes(sides.size());
+    std::vector<uint32_t> numbers;
+    std::vector<Box> boxes;
     for (uint32_t n = 0; n < sides.size(); n++) {
         Place a, b;
+        Box box;
+        if (corners[sides[n]].outline != n)
+            continue;
         ends_of(n, a, b);
         for (const Place &p : {a, b}) {
             if (!std::isfinite(p[0]) || !std::isfinite(p[1]))
-                return;
-            add(boxes[n], p);
+                return false;
+            add(box, p);
         }
-        numbers[n] = n;
+        numbers.push_back(n);
+        boxes.push_back(box);
     }
     outlines = std::make_unique<Nearby>(numbers, boxes, sides.size());
-    if (overlap_at_first())
+    planted = live = numbers.size();
+    return true;
+}
+
+void TextureCharts::build_outlines()
+{
+    if (!plant_outlines() || overlap_at_first())
         outlines.reset();
 }
 
@@ -390,22 +401,21 @@ void TextureCharts::list_swept(const Surface &surface, HalfedgeHandle h)
     }
 }
 
-// A side that does not move must not cross those that do, nor begin in what they sweep over.
-bool TextureCharts::crosses_swept(uint32_t outline, const Place &a, const Place &b) const
+bool TextureCharts::is_swept(uint32_t outline) const
 {
     for (const Swept &s : swept)
         if (s.outline == outline)
-            return false;
-    for (const Swept &s : swept)
-        if (do_cross(a, b, s.to, s.other) || is_inside(a, s.from, s.to, s.other))
             return true;
     return false;
 }
 
+// A side that does not move must not cross those that do, nor begin in what they sweep over. The two sides of a
+// seam may lie far apart in the texture, so that each moving side is looked at by itself.
 bool TextureCharts::meets_outlines() const
 {
-    Box box;
+    size_t visits = 0;
     for (const Swept &s : swept) {
+        Box box;
         add(box, s.from);
         add(box, s.to);
         add(box, s.other);
@@ -413,13 +423,17 @@ bool TextureCharts::meets_outlines() const
             if (do_cross(s.to, s.other, t.to, t.other) ||
                 is_inside(t.other, s.from, s.to, s.other))
                 return true;
+        const bool meets = outlines->any(box, [&](uint32_t other, const float *) {
+            Place a, b;
+            ends_of(other, a, b);
+            return ++visits > MAX_VISITS ||
+                   ((do_cross(a, b, s.to, s.other) || is_inside(a, s.from, s.to, s.other)) &&
+                    !is_swept(other));
+        });
+        if (meets)
+            return true;
     }
-    size_t visits = 0;
-    return outlines->any(box, [&](uint32_t other, const float *) {
-        Place a, b;
-        ends_of(other, a, b);
-        return ++visits > MAX_VISITS || crosses_swept(other, a, b);
-    });
+    return false;
 }
 
 // Of a triangle that vanishes, hands the side along a seam over to the triangle across the other one.
@@ -430,8 +444,10 @@ void TextureCharts::hand_over_side(const Surface &surface, HalfedgeHandle h)
     const size_t first = find_corner(uint32_t(surface.face_handle(h).idx()),
                                      uint32_t(surface.from_vertex_handle(h).idx()));
     const size_t second = next(first), third = next(second);
-    if (corners[first].outline != NONE && outlines)
+    if (corners[first].outline != NONE && outlines) {
         outlines->remove(corners[first].outline);
+        live--;
+    }
     corners[first].outline = NONE;
     for (const size_t from : {second, third}) {
         const uint32_t outline = corners[from].outline;
@@ -467,6 +483,8 @@ void TextureCharts::change(const Surface &surface, HalfedgeHandle h, const OneRi
         if (s.outline == corners[sides[s.outline]].outline)
             outlines->move(s.outline, box);
     }
+    if (outlines && 2 * live < planted && live > 256) // most boxes are empty, or too large
+        plant_outlines();
 }
 
 } // namespace cw

@@ -79,6 +79,7 @@ private:
     static size_t next(size_t corner);
     void find_seams(const Surface &surface);
     void build_outlines();
+    bool plant_outlines();
     bool overlap_at_first() const;
     void ends_of(uint32_t outline, Place &a, Place &b) const;
     void mark_side(const Surface &surface, HalfedgeHandle h);
@@ -91,7 +92,7 @@ private:
     void list_swept(const Surface &surface, HalfedgeHandle h);
     void add_swept(size_t side, const Place &from, const Place &to, const Place &other);
     bool meets_outlines() const;
-    bool crosses_swept(uint32_t outline, const Place &a, const Place &b) const;
+    bool is_swept(uint32_t outline) const;
     void hand_over_side(const Surface &surface, HalfedgeHandle h);
 
     bool holds_seams = false;
@@ -100,6 +101,7 @@ private:
     std::vector<uint8_t> seams;       // vertices: edges of seams there, at most 3
     std::vector<size_t> sides;        // outlines: the corner where the side begins
     std::unique_ptr<Nearby> outlines; // NULL: overlaps are not looked for
+    size_t planted = 0, live = 0;     // sides in that tree, at first and now
     // Of the last collapse that was looked at:
     bool along_seam = false;
     Target end = NOWHERE;
