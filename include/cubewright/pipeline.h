@@ -176,7 +176,8 @@ CW_NODISCARD CW_API cw_status cw_pipeline_check(cw_surface_source source, unsign
  * Where it can, a surface is simplified slab by slab while it is extracted, and is never whole.
  * A simplified surface gets normals of the field, unless it was smoothed or cut, or
  * its handles were closed. Levels of detail share the square of their texture coordinates, each with
- * half of the texels for a mm of the one before, and so their maps.
+ * half of the texels for a mm of the one before, and so their maps. With maps their triangles go where
+ * normals bend, too (cw_simplify_desc.normal_weight).
  *
  * volume     borrowed; as in cw_extract()
  * extractor  of this volume, for one of several surfaces; NULL: this one by itself
