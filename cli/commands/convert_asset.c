@@ -2,11 +2,13 @@
 #include "cli/commands/convert_asset.h"
 
 #include "cli/assets/taken_levels.h"
+#include "cli/assets/uv_rebake.h"
 #include "cli/framework/console.h"
 #include "cli/inputs/extract_surface.h"
 #include "cli/results/detail_levels.h"
 #include "cli/results/stage_facts.h"
 #include "core/base/status.h"
+#include "core/texture/gather_meshes.h"
 
 #include <string.h>
 
@@ -16,8 +18,9 @@ typedef struct asset_run {
     const cli_asset *asset;
     int pivot;
     cli_taken_levels taken;
-    double moved[3];   /* to the pivot */
-    cli_pieces pieces; /* the surface that the levels were made of is the only one */
+    cli_rebake carried; /* the pictures that the mesh came with */
+    double moved[3];    /* to the pivot */
+    cli_pieces pieces;  /* the surface that the levels were made of is the only one */
 } asset_run;
 
 static cw_status run_stages(asset_run *a, cli_made *made, cw_error *err)
@@ -46,6 +49,29 @@ static cw_status run_stages(asset_run *a, cli_made *made, cw_error *err)
     return CW_OK;
 }
 
+/* Carries the pictures of the mesh over into the square of the levels. */
+static cw_status carry_pictures(asset_run *a, const cw_atlas_facts *atlas, cw_error *err)
+{
+    cli_mesh_run *r = a->run;
+    const cli_piece *piece = r->pieces.piece;
+    cw_part part = {.mesh = &piece->input, .textures = piece->textures};
+    const cw_mesh *list[CLI_MAX_COUNTS];
+    const cw_bake_desc desc = {
+        .size = atlas->size, .margin = atlas->margin, .threads = r->threads};
+    cw_mesh all = {0};
+    if (!piece->textures)
+        return CW_OK;
+    for (size_t n = 0; n < a->taken.count; n++)
+        list[n] = &a->taken.levels[n];
+    cw_status st = cwi_gather_meshes(list, NULL, a->taken.count, true, true, &all, err);
+    a->carried.old = (cli_mesh){.path = r->mesh.path, .parts = &part, .part_count = 1};
+    if (st == CW_OK)
+        st = cli_rebake_run(&a->carried, &all, &desc, &a->taken.maps.textures, err);
+    a->carried.old = (cli_mesh){0}; /* it was borrowed */
+    cw_mesh_free(&all);
+    return st;
+}
+
 static cw_status make_levels(void *state, cw_mesh *levels, cw_error *err)
 {
     asset_run *a = state;
@@ -54,6 +80,8 @@ static cw_status make_levels(void *state, cw_mesh *levels, cw_error *err)
     a->taken.levels = levels;
     cli_report_begin(&r->report);
     cw_status st = run_stages(a, made, err);
+    if (st == CW_OK)
+        st = carry_pictures(a, &made->facts.atlas, err);
     if (st == CW_OK)
         st = cli_move_taken(&a->taken, a->pivot, a->moved, err);
     if (st != CW_OK)
@@ -119,5 +147,6 @@ cw_status cli_convert_asset(cli_mesh_run *r, const cli_asset *asset, int pivot, 
     cli_free_detail_levels(&levels);
     cli_free_pieces(&a.pieces);
     cli_free_taken(&a.taken);
+    cli_rebake_free(&a.carried);
     return st;
 }

@@ -7,8 +7,12 @@ cw_status cwi_copy_surface(cwi_pipeline *p, cw_mesh *mesh, cw_error *err)
 {
     p->facts.extracted.triangles = p->given->triangle_count;
     p->facts.extracted.vertices = p->given->vertex_count;
-    return p->given->triangle_count ? cwi_mesh_copy(p->given, mesh, err)
-                                    : cwi_fail(err, CW_ERR_EMPTY, "the mesh has no triangles");
+    if (!p->given->triangle_count)
+        return cwi_fail(err, CW_ERR_EMPTY, "the mesh has no triangles");
+    cw_status st = cwi_mesh_copy(p->given, mesh, err);
+    if (p->desc->atlas) /* its seams are no longer to be kept */
+        cw_mesh_attribute_remove(mesh, CW_TEXTURE_COORDINATES);
+    return st;
 }
 
 cw_status cw_pipeline_run_mesh(const cw_mesh *mesh, const cw_pipeline_desc *desc,

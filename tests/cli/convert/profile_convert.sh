@@ -22,6 +22,16 @@ cubewright convert a.stl --profile game --pivot base -o game.glb -q && cubewrigh
 # a mesh in other units: the same numbers, a thousand times smaller
 cubewright convert a.stl --scale 0.001 -o s.ply -q
 cubewright convert s.ply --profile game -o s.glb -q && echo small
+
+# pictures are carried over: colours of another volume, and occlusion
+cubewright make sphere -o paint.nrrd --dims 64 -q
+cubewright extract v.nrrd --iso 300 --largest 1 --simplify 4k --uv --maps normals,colors,occlusion --color-by paint.nrrd --atlas 256 \
+    -o painted.glb -q
+textures() { strings -n 4 "$1" | grep -o -e baseColorTexture -e occlusionTexture -e normalTexture -e COLOR_0 | sort -u | tr '\n' ' ' && echo; }
+textures painted.glb
+cubewright convert painted.glb --profile mobile -o carried.glb -q
+textures carried.glb
+cubewright check carried.glb --reference painted.glb --looks 2 -q && echo "looks alike"
 bad() {
     cubewright convert a.stl "$@" -q
     echo "$? $*"
