@@ -35,8 +35,11 @@ typedef struct cw_appearance_desc {
     cw_progress progress; /* default: none */
 } cw_appearance_desc;
 
+/* Maximum of cw_appearance_desc.views. */
 #define CW_APPEARANCE_MAX_VIEWS 64
-#define CW_APPEARANCE_MAX_SIZE  4096
+
+/* Maximum of cw_appearance_desc.size. */
+#define CW_APPEARANCE_MAX_SIZE 4096
 
 /* The difference of two pictures, over the pixels that at least one shows a surface in; what one does
  * not show is black there. With `_both`: over the pixels that both show, inside both outlines. */
@@ -46,12 +49,14 @@ typedef struct cw_look_difference {
     double rmse;         /* of red, green and blue, 0 to 255 */
     double psnr_db;      /* 20 log10(255 / rmse); INFINITY: equal */
     double delta_e;      /* mean CIEDE2000 [Sharma2005] */
-    double rmse_both, psnr_both_db, delta_e_both;
+    double rmse_both;    /* as rmse, inside both outlines */
+    double psnr_both_db; /* as psnr_db, there */
+    double delta_e_both; /* as delta_e, there */
 } cw_look_difference;
 
 /* A view: the camera looks at the middle of the reference's box from outside of it. */
 typedef struct cw_appearance_view {
-    cw_camera camera;
+    cw_camera camera; /* from which it is drawn */
     double
         azimuth_deg; /* 0: from the patient's front; 90: from the patient's left; below 360 */
     double elevation_deg; /* -90: from below, 90: from above */
@@ -73,8 +78,10 @@ typedef struct cw_appearance {
  * light comes from above the left of the camera, and goes with it; 15 % of it come from everywhere.
  * viewer/appearance.md has the definition, and how near three.js comes to it.
  *
- * reference        count of them; the views are those of its box
- * surface          count of them, in the same frame
+ * reference        reference_count of them, borrowed; the views are those of their box
+ * reference_count  number of references
+ * surface          surface_count of them, borrowed, in the same frame
+ * surface_count    number of surfaces
  * desc             borrowed; NULL means all defaults
  * with_maps        filled on success
  * without_maps     filled on success: the same without the maps of `surface`, those of the reference
@@ -94,6 +101,8 @@ CW_NODISCARD CW_API cw_status cw_appearance_measure(
     cw_appearance *without_maps, cw_error *err);
 
 /* Finds one of the views of a reference.
+ * reference  reference_count of them, borrowed
+ * reference_count  number of references
  * views    number of all views, as in cw_appearance_desc; 0: the default
  * n        number of the view, below views
  * view     filled on success

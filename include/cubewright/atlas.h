@@ -102,6 +102,7 @@ typedef struct cw_texture_distance {
  *
  * mesh, full  with texture coordinates; borrowed
  * threads     0: one per processor
+ * facts       filled on success
  * Returns     CW_ERR_ARGUMENT  no texture coordinates; those of the full mesh are not all finite
  *             CW_ERR_EMPTY     these cover no area; CW_ERR_NO_MEMORY; or as cw_mesh_check()
  * Source      points in space and texture as those of five dimensions [Garland1998] */

@@ -53,11 +53,12 @@ typedef struct cw_bake_facts {
     size_t texels; /* whose middle lies in a triangle */
     size_t
         missed; /* of them: those from which no surface that faces the same way is in reach */
-    double max_mm;   /* the largest distance that was bridged, and */
-    double mean_mm;  /* the mean */
-    double mean_deg; /* the mean angle between the normals of both surfaces */
-    /* As in the settings, or their defaults: */
-    double reach_mm, occlusion_mm, thickness_mm;
+    double max_mm;        /* the largest distance that was bridged, and */
+    double mean_mm;       /* the mean */
+    double mean_deg;      /* the mean angle between the normals of both surfaces */
+    double reach_mm;      /* as in the settings, or the default */
+    double occlusion_mm;  /* the same; 0: of pictures */
+    double thickness_mm;  /* the same */
     double curvature_max; /* 1 / mm; 0: no curvature was asked for */
 } cw_bake_facts;
 
@@ -110,6 +111,11 @@ CW_API CW_NODISCARD cw_status cw_bake_maps(const cw_mesh *mesh, const cw_mesh *f
 
 /* Bakes the same maps for several meshes that share a square, of cw_meshes_atlas(): parts, or levels of detail.
  * meshes  count of them; borrowed
+ * count   number of meshes
+ * full    as in cw_bake_maps()
+ * desc    the same
+ * images  the same
+ * facts   the same
  * Returns as cw_bake_maps() */
 CW_API CW_NODISCARD cw_status cw_bake_meshes(const cw_mesh *const *meshes, size_t count,
                                              const cw_mesh *full, const cw_bake_desc *desc,

@@ -485,9 +485,10 @@ typedef struct cw_textures {
     cw_texture emissive;           /* light of its own, sRGB */
     bool
         has_factors; /* the next five count; default: white, not metallic, roughness 0.8, no light */
-    float color_factor[4]; /* linear; multiplied with the colour */
-    float metallic_factor, roughness_factor;
-    float emissive_factor[3];
+    float color_factor[4];                  /* linear; multiplied with the colour */
+    float metallic_factor;                  /* multiplied with blue of metallic_roughness */
+    float roughness_factor;                 /* multiplied with its green */
+    float emissive_factor[3];               /* linear; multiplied with emissive */
     float normal_scale, occlusion_strength; /* 0: 1 */
     bool repeats; /* the texture goes on beyond 0 and 1; default: it ends there */
 } cw_textures;

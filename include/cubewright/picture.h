@@ -115,6 +115,7 @@ CW_NODISCARD CW_API cw_status cw_image_encode(const cw_image *image, bool is_col
 
 /* Decodes the bytes of a PNG or JPEG file. Greys become colours, 16 bits 8; without alpha all is opaque.
  * bytes    borrowed
+ * size     their number
  * image    allocated and filled on success; free it with cw_image_free()
  * Returns  CW_ERR_UNSUPPORTED  another format, a JPEG that is not grey or of three colours, or this build
  *                              lacks their libraries
