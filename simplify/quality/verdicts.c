@@ -33,6 +33,12 @@ static const severity for_solver = {
 static const severity look = {{CW_GRADE_WARN, CW_GRADE_WARN, CW_GRADE_WARN, CW_GRADE_WARN}};
 static const severity overlap = {{CW_GRADE_WARN, CW_GRADE_WARN, CW_GRADE_NOTE, CW_GRADE_FAIL}};
 
+/* Returns the column of a profile: what is drawn has one. */
+static int find_column(cw_profile profile)
+{
+    return cw_check_budget(profile) ? CW_PROFILE_WEB : (int)profile;
+}
+
 static const char *plural_ending(size_t count)
 {
     return count == 1 ? "" : "s";
@@ -216,7 +222,7 @@ static void judge_shapes(bench *b)
 
 bool cw_check_wants_crossings(cw_profile profile)
 {
-    return for_solids.grade[profile] == CW_GRADE_FAIL;
+    return for_solids.grade[find_column(profile)] == CW_GRADE_FAIL;
 }
 
 static void judge_crossings(bench *b)
@@ -524,7 +530,7 @@ size_t cw_check_judge(const cw_findings *findings, cw_profile profile,
         return 0;
     bench b = {.f = findings,
                .profile = profile,
-               .column = cw_check_budget(profile) ? CW_PROFILE_WEB : (int)profile,
+               .column = find_column(profile),
                .verdicts = verdicts};
     judge_size(&b);
     judge_surface(&b);
