@@ -3,6 +3,7 @@
 #define CORE_GEOMETRY_BVH_SEGMENT_H
 
 #include "core/geometry/bvh.h"
+#include "core/geometry/vec3.h"
 
 /* A segment from a point along a vector, prepared for cwi_boxes_crossed(). */
 typedef struct cwi_boxes_segment {
@@ -21,6 +22,16 @@ static inline cwi_boxes_segment cwi_boxes_segment_of(const double from[3],
                                                : copysignf(1e30f, (float)vector[a]);
     }
     return s;
+}
+
+/* Finds two directions across a ray, the same for equal ones. direction: unit */
+static inline void cwi_find_across(const double direction[3], double across[2][3])
+{
+    const int a = fabs(direction[0]) < 0.6 ? 0 : 1;
+    const double axis[3] = {a == 0, a == 1, 0};
+    cwi_cross(direction, axis, across[0]);
+    cwi_normalise(across[0]);
+    cwi_cross(direction, across[0], across[1]);
 }
 
 /* Returns bit c for each box c of the node that the segment may meet. */

@@ -53,12 +53,6 @@ const char *cw_map_name(cw_map map)
 
 /* --- a pass --------------------------------------------------------------------------------- */
 
-/* Sums over a row of texels. */
-typedef struct row_facts {
-    size_t texels, missed;
-    double max_mm, sum_mm, sum_deg;
-} row_facts;
-
 /* The maps of one size, which share the places of their texels. */
 typedef struct pass {
     const cwi_baking *b;
@@ -66,7 +60,7 @@ typedef struct pass {
     uint32_t size;
     uint32_t *triangle; /* texels: the triangle that the middle lies in; CWI_NO_TEXEL: none */
     uint16_t *texels[CW_MAP_COUNT]; /* size x size x 3 */
-    row_facts *rows;
+    cwi_bake_row *rows;
 } pass;
 
 static void put_texel(const pass *p, size_t at, const cwi_texel_frame *f,
@@ -99,7 +93,7 @@ static void find_frame(const pass *p, uint32_t triangle, uint32_t x, uint32_t y,
 static void bake_row(void *context, size_t y)
 {
     const pass *p = context;
-    row_facts *facts = &p->rows[y];
+    cwi_bake_row *facts = &p->rows[y];
     double last[3] = {0, 0, 0}, last_mm = INFINITY;
     for (uint32_t x = 0; x < p->size; x++) {
         const size_t at = y * p->size + x;
@@ -128,15 +122,16 @@ static void bake_row(void *context, size_t y)
     }
 }
 
-static void sum_facts(const pass *p, cw_bake_facts *facts)
+void cwi_bake_sum(const cwi_bake_row *rows, uint32_t count, cw_bake_facts *facts)
 {
     double mm = 0, deg = 0;
-    for (uint32_t y = 0; y < p->size; y++) {
-        facts->texels += p->rows[y].texels;
-        facts->missed += p->rows[y].missed;
-        facts->max_mm = fmax(facts->max_mm, p->rows[y].max_mm);
-        mm += p->rows[y].sum_mm;
-        deg += p->rows[y].sum_deg;
+    *facts = (cw_bake_facts){0};
+    for (uint32_t y = 0; y < count; y++) {
+        facts->texels += rows[y].texels;
+        facts->missed += rows[y].missed;
+        facts->max_mm = fmax(facts->max_mm, rows[y].max_mm);
+        mm += rows[y].sum_mm;
+        deg += rows[y].sum_deg;
     }
     const size_t hit = facts->texels - facts->missed;
     facts->mean_mm = hit ? mm / (double)hit : 0;
@@ -193,7 +188,7 @@ static cw_status run_pass(const cwi_baking *b, const cw_bake_desc *d, unsigned m
         if (maps >> m & 1)
             st = finish_image(&p, m, d, &images[m], err);
     if (st == CW_OK && facts)
-        sum_facts(&p, facts);
+        cwi_bake_sum(p.rows, p.size, facts);
     for (int m = 0; m < CW_MAP_COUNT; m++)
         cwi_free(p.texels[m]);
     cwi_free(p.triangle);

@@ -17,12 +17,6 @@
 #include <math.h>
 #include <string.h>
 
-/* Sums over a row of texels. */
-typedef struct row_facts {
-    size_t texels, missed;
-    double max_mm, sum_mm, sum_deg;
-} row_facts;
-
 typedef struct carrying {
     cw_mesh mesh, full; /* copies, with vertices split at seams; full: all sources */
     float (*tangents)[4], (*full_tangents)[4];
@@ -33,7 +27,7 @@ typedef struct carrying {
     uint32_t size, *triangle; /* as in cwi_texels_find() */
     double reach, shift[3];
     cw_image *pictures;
-    row_facts *rows;
+    cwi_bake_row *rows;
 } carrying;
 
 /* --- the sources -------------------------------------------------------------------------- */
@@ -166,7 +160,7 @@ static void fill_texel(const carrying *b, uint32_t found, const double point[3],
 static void fill_row(void *context, size_t y)
 {
     carrying *b = context;
-    row_facts *facts = &b->rows[y];
+    cwi_bake_row *facts = &b->rows[y];
     const float *uv = cwi_texture_of(&b->mesh)->data;
     double last[3] = {0, 0, 0}, last_mm = INFINITY;
     for (uint32_t x = 0; x < b->size; x++) {
@@ -275,20 +269,6 @@ static cw_status fill_pictures(carrying *b, const cw_bake_desc *d, cw_error *err
     return st;
 }
 
-static void sum_facts(const carrying *b, cw_bake_facts *facts)
-{
-    double mm = 0;
-    *facts = (cw_bake_facts){.reach_mm = b->reach};
-    for (uint32_t y = 0; y < b->size; y++) {
-        facts->texels += b->rows[y].texels;
-        facts->missed += b->rows[y].missed;
-        facts->max_mm = fmax(facts->max_mm, b->rows[y].max_mm);
-        mm += b->rows[y].sum_mm;
-    }
-    const size_t hit = facts->texels - facts->missed;
-    facts->mean_mm = hit ? mm / (double)hit : 0;
-}
-
 static cw_status check_sources(const cw_mesh *mesh, const cw_bake_source *sources, size_t count,
                                const cw_bake_desc *d, cw_error *err)
 {
@@ -324,8 +304,10 @@ cw_status cw_bake_pictures(const cw_mesh *mesh, const cw_bake_source *sources, s
         st = fill_pictures(&b, &d, err);
     for (int use = 0; use < CW_PICTURE_USES && st != CW_OK; use++)
         cw_image_free(&pictures[use]);
-    if (st == CW_OK && facts)
-        sum_facts(&b, facts);
+    if (st == CW_OK && facts) {
+        cwi_bake_sum(b.rows, b.size, facts);
+        facts->reach_mm = b.reach;
+    }
     cw_mesh_free(&b.mesh);
     cw_mesh_free(&b.full);
     cwi_boxes_free(&b.tree);

@@ -54,17 +54,7 @@ static double cast_ray(const cwi_baking *b, const double from[3], const double d
     return r.fraction * reach;
 }
 
-/* Finds two directions across a unit vector, the same for equal ones. */
-static void find_across(const double d[3], double across[2][3])
-{
-    const int a = fabs(d[0]) < 0.6 ? 0 : 1;
-    const double axis[3] = {a == 0, a == 1, 0};
-    cwi_cross(d, axis, across[0]);
-    cwi_normalise(across[0]);
-    cwi_cross(d, across[0], across[1]);
-}
-
-/* Turns the n-th of `count` directions of a golden spiral around a normal. height: of it over the plane */
+/* Places the n-th direction of a golden spiral around a normal. height: over the plane across it */
 static void place_ray(const double normal[3], const double across[2][3], int n, double height,
                       double direction[3])
 {
@@ -84,7 +74,7 @@ void cwi_shade_occlusion(const cwi_baking *b, const cwi_texel_frame *f,
     color[0] = color[1] = color[2] = 1;
     if (!hit)
         return;
-    find_across(hit->normal, across);
+    cwi_find_across(hit->normal, across);
     for (int k = 0; k < 3; k++)
         from[k] = hit->point[k] + b->bias * hit->normal[k];
     for (int n = 0; n < OPEN_RAYS; n++) {
@@ -109,7 +99,7 @@ void cwi_shade_thickness(const cwi_baking *b, const cwi_texel_frame *f,
         inward[k] = -hit->normal[k];
         from[k] = hit->point[k] + b->bias * inward[k];
     }
-    find_across(inward, across);
+    cwi_find_across(inward, across);
     for (int n = 0; n < THICK_RAYS; n++) {
         place_ray(inward, (const double(*)[3])across, n, 1 - (1 - low) * n / (THICK_RAYS - 1),
                   direction);

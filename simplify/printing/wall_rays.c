@@ -133,16 +133,6 @@ static double cast_ray(const ray_field *f, size_t own, const double from[3],
 
 /* --- a point ------------------------------------------------------------------------------ */
 
-/* Finds two directions across a unit vector. */
-static void find_across(const double d[3], double across[2][3])
-{
-    const int a = fabs(d[0]) < 0.6 ? 0 : 1;
-    const double axis[3] = {a == 0, a == 1, 0};
-    cwi_cross(d, axis, across[0]);
-    cwi_normalise(across[0]);
-    cwi_cross(d, across[0], across[1]);
-}
-
 /* Returns the wall or gap at a point. direction: unit, into it */
 static double measure_point(const ray_field *f, size_t own, const double from[3],
                             const double direction[3], double side, double limit,
@@ -153,7 +143,7 @@ static double measure_point(const ray_field *f, size_t own, const double from[3]
         return length_mm;
     double across[2][3];
     const double along = cos(OFF_DEG * CWI_PI / 180), off = sin(OFF_DEG * CWI_PI / 180);
-    find_across(direction, across);
+    cwi_find_across(direction, across);
     for (int n = 0; n < AROUND; n++) {
         const double turn = 2 * CWI_PI * n / AROUND;
         double d[3];
