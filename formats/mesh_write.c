@@ -471,7 +471,7 @@ static void name_attributes(const cw_part *parts, size_t count, char *text, size
         for (size_t n = 0; parts[i].mesh && n < parts[i].mesh->attribute_count; n++) {
             const char *name = parts[i].mesh->attributes[n].name;
             size_t first = 0;
-            if (strcmp(name, CW_FACE_COLORS) == 0)
+            if (strcmp(name, CW_FACE_COLORS) == 0 || strcmp(name, CW_CORNER_NORMALS) == 0)
                 continue;
             while (!parts[first].mesh || !cw_mesh_attribute_find(parts[first].mesh, name))
                 first++;

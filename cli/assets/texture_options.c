@@ -44,6 +44,20 @@ static bool parse_maps(const char *text, unsigned *maps, const char **bad)
     }
 }
 
+cw_status cli_check_crease(const cli_number *crease, cw_error *err)
+{
+    if (!crease->given || crease->is_word || (crease->value > 0 && crease->value <= 180))
+        return CW_OK;
+    return cwi_fail(err, CW_ERR_ARGUMENT,
+                    "--crease-angle %g: expected more than 0, up to 180, or off",
+                    crease->value);
+}
+
+double cli_crease_degrees(const cli_number *crease)
+{
+    return crease->is_word ? 0 : crease->value;
+}
+
 unsigned cli_find_maps(const cli_texture_args *args)
 {
     unsigned maps;

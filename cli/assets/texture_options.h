@@ -54,6 +54,12 @@ typedef struct cli_texture_args {
 CW_NODISCARD cw_status cli_check_texture(const cli_texture_args *args, const char *output,
                                          const char *format, cw_error *err);
 
+/* --crease-angle: "off/DEG". Refuses a value out of range. */
+CW_NODISCARD cw_status cli_check_crease(const cli_number *crease, cw_error *err);
+
+/* Returns the angle; 0: normals do not part. */
+double cli_crease_degrees(const cli_number *crease);
+
 /* Returns the maps that are asked for, a bit 1u << cw_map for each; cli_check_texture() has checked them. */
 unsigned cli_find_maps(const cli_texture_args *args);
 

@@ -3,6 +3,7 @@
 #include "cli/commands/convert_asset.h"
 #include "cli/commands/mesh_command.h"
 #include "cli/framework/console.h"
+#include "cli/framework/quantity.h"
 #include "cli/inputs/cut_options.h"
 #include "cli/inputs/place_options.h"
 #include "cli/results/detail_levels.h"
@@ -14,6 +15,7 @@ typedef struct convert_args {
     cli_mesh_args mesh;
     cli_placing placing;
     cli_plane cut;
+    cli_number crease;
     bool split, check;
     int profile; /* 0: none, else 1 + that of cli_find_asset() */
     int pivot;   /* of a profile's levels */
@@ -45,6 +47,9 @@ static const cli_option options[] = {
      "Cut by a plane, keep what is above, and close it flat: z=5mm, z=10% of the box, -z=5mm keeps "
      "what is below, or x,y,z:nx,ny,nz (off)",
      offsetof(convert_args, cut)},
+    {"crease-angle", 0, CLI_NUMBER, "off/DEG",
+     "New normals, which part at edges with a larger angle, for GLB and OBJ (off)",
+     offsetof(convert_args, crease)},
     {"check", 0, CLI_FLAG, NULL, "Measure the mesh: closed, manifold, size (on; --no-check)",
      offsetof(convert_args, check)},
     {"profile", 'p', CLI_CHOICE, "none/" CLI_ASSET_CHOICES,
@@ -74,6 +79,8 @@ static void put_params(cli_json *j, const cli_mesh_run *r, const cli_made *made)
     cli_json_pivot(j, args->pivot);
     if (args->cut.given)
         cli_json_text(j, "cut_plane", cli_plane_text(&args->cut));
+    if (cli_crease_degrees(&args->crease) > 0)
+        cli_json_number(j, "crease_angle", args->crease.value);
 }
 
 static void put_facts(cli_json *j, const cli_mesh_run *r)
@@ -94,7 +101,8 @@ static cw_status check_values(cli_mesh_run *r, cw_error *err)
         return cwi_fail(err, CW_ERR_ARGUMENT,
                         "--profile %s: levels and maps in one file are for .glb and .gltf",
                         asset_of(r)->name);
-    return cli_check_placing(&args_of(r)->placing, err);
+    cw_status st = cli_check_crease(&args_of(r)->crease, err);
+    return st == CW_OK ? cli_check_placing(&args_of(r)->placing, err) : st;
 }
 
 /* The names of --split are known only after reading. */
@@ -111,6 +119,34 @@ static cw_status name_outputs(cli_mesh_run *r, cw_error *err)
                : cli_name_output(&r->outputs, r->args->output, r->args->common.inputs[0], err);
 }
 
+/* Gives a mesh new normals, which part at creases. Vertices that were split where they part are one then. */
+static cw_status part_normals(cw_mesh *mesh, double degrees, size_t *creases, cw_error *err)
+{
+    size_t found = 0;
+    cw_status st = cw_mesh_weld(mesh, NULL, err);
+    if (st == CW_OK)
+        st = cw_mesh_normals(mesh, err);
+    if (st == CW_OK)
+        st = cw_mesh_crease_normals(mesh, degrees, NULL, &found, err);
+    *creases += found;
+    return st;
+}
+
+static cw_status part_all_normals(cli_mesh_run *r, cw_error *err)
+{
+    const double degrees = args_of(r)->crease.value;
+    cli_mesh *m = &r->mesh;
+    size_t creases = 0;
+    cw_status st = m->parts ? CW_OK : part_normals(&m->mesh, degrees, &creases, err);
+    for (size_t n = 0; m->parts && n < m->part_count && st == CW_OK; n++)
+        st = part_normals((cw_mesh *)(uintptr_t)m->parts[n].mesh, degrees, &creases, err);
+    if (st != CW_OK)
+        return cwi_fail_in(err, st, m->path);
+    cli_say("%s: normals part at %s edge%s", m->path, cli_count(creases),
+            creases == 1 ? "" : "s");
+    return CW_OK;
+}
+
 /* Places the mesh, then cuts it there. */
 static cw_status change_mesh(cli_mesh_run *r, cw_error *err)
 {
@@ -118,8 +154,11 @@ static cw_status change_mesh(cli_mesh_run *r, cw_error *err)
     cw_status st = CW_OK;
     if (cli_places(&args->placing))
         st = cli_place_parts(&args->placing, &r->mesh, err);
-    return st == CW_OK && args->cut.given ? cli_cut_parts(&args->cut, &r->mesh, r->state, err)
-                                          : st;
+    if (st == CW_OK && args->cut.given)
+        st = cli_cut_parts(&args->cut, &r->mesh, r->state, err);
+    return st == CW_OK && cli_crease_degrees(&args->crease) > 0 && !asset_of(r)
+               ? part_all_normals(r, err)
+               : st;
 }
 
 static cw_status convert_file(cli_mesh_run *r, size_t n, const cw_part *parts, size_t count,
@@ -175,7 +214,8 @@ static cw_status convert_mesh(cli_mesh_run *r, cw_error *err)
     if (!cli_mesh_triangles(m))
         return cwi_fail(err, CW_ERR_EMPTY, "%s: it has no triangles", m->path);
     if (asset_of(r))
-        return cli_convert_asset(r, asset_of(r), args_of(r)->pivot, err);
+        return cli_convert_asset(r, asset_of(r), args_of(r)->pivot,
+                                 cli_crease_degrees(&args_of(r)->crease), err);
     if (args_of(r)->split && m->part_count > 1)
         return convert_parts(r, m->parts, m->part_count, err);
     if (args_of(r)->split)

@@ -17,6 +17,7 @@ typedef struct asset_run {
     cli_mesh_run *run;
     const cli_asset *asset;
     int pivot;
+    double crease_degrees;
     cli_taken_levels taken;
     cli_rebake carried; /* the pictures that the mesh came with */
     double moved[3];    /* to the pivot */
@@ -39,6 +40,7 @@ static cw_status run_stages(asset_run *a, cli_made *made, cw_error *err)
                                    .lod_count = a->taken.lod.count,
                                    .atlas = &atlas,
                                    .bake = &bake,
+                                   .crease_degrees = a->crease_degrees,
                                    .watch.begin = cli_stage_progress};
     cw_status st = cw_pipeline_run_mesh(&r->pieces.piece->input, &desc,
                                         cli_level_sink(&a->taken), &made->facts, err);
@@ -126,9 +128,14 @@ static cw_status deliver_level(void *state, size_t file, const cw_part *parts, s
     return st;
 }
 
-cw_status cli_convert_asset(cli_mesh_run *r, const cli_asset *asset, int pivot, cw_error *err)
+cw_status cli_convert_asset(cli_mesh_run *r, const cli_asset *asset, int pivot, double degrees,
+                            cw_error *err)
 {
-    asset_run a = {.run = r, .asset = asset, .pivot = pivot, .taken.drops_equal = true};
+    asset_run a = {.run = r,
+                   .asset = asset,
+                   .pivot = pivot,
+                   .crease_degrees = degrees,
+                   .taken.drops_equal = true};
     cli_detail_levels levels = {.lod = &a.taken.lod,
                                 .name = r->args->written.name,
                                 .files = &r->outputs,

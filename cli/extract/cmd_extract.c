@@ -100,6 +100,10 @@ static const cli_option options[] = {
     {"normals", 0, CLI_CHOICE, "field/none",
      "Vertex normals from the field's gradient, or none (field)",
      offsetof(cli_extract_args, normals)},
+    {"crease-angle", 0, CLI_NUMBER, "off/DEG",
+     "Let normals part at edges with a larger angle, in GLB and OBJ; a simplified surface parts them at "
+     "caps (off)",
+     offsetof(cli_extract_args, crease)},
     {"preview", 0, CLI_FLAG, NULL,
      "Give a quick look from every 4th voxel along each axis (off)",
      CLI_INPUT_ROW(cli_extract_args, preview)},
@@ -245,6 +249,7 @@ static const cli_rule rules[] = {
     {"profile=game profile=web profile=mobile", CLI_EXCLUDES,
      "labels open cull animate steps pvd snap part parts manifest"},
     {"uv", CLI_EXCLUDES, "animate"},
+    {"crease-angle", CLI_EXCLUDES, "normals=none"},
     {"prove-crop", CLI_NEEDS, "crop"},
     {"prove-crop", CLI_EXCLUDES,
      "preview coarsen snap resample denoise remove-table mask mask-open mask-close"},

@@ -156,6 +156,8 @@ cw_status cli_extract_check_args(cli_extract_run *s, cw_error *err)
     if (st == CW_OK)
         st = cli_check_texture(&args->texture, args->output, args->format, err);
     if (st == CW_OK)
+        st = cli_check_crease(&args->crease, err);
+    if (st == CW_OK)
         st = check_lod(args, err);
     if (st == CW_OK)
         st = cli_read_views(&args->pixel, s->plan.views, &s->plan.view_count, err);

@@ -167,6 +167,8 @@ void cli_extract_put_params(cli_json *j, const void *p, const cli_made *made)
     cli_json_pivot(j, args->pivot);
     if (args->fill_voids)
         cli_json_bool(j, "fill_voids", true);
+    if (cli_crease_degrees(&args->crease) > 0)
+        cli_json_number(j, "crease_angle", args->crease.value);
     if (args->handles.given)
         cli_json_number(j, "close_handles_mm", made->facts.handles.length_mm);
     if (args->cut.given)

@@ -31,6 +31,7 @@ typedef struct cli_extract_args {
     size_t largest; /* components to keep; 0: all */
     bool fill_voids;
     cli_length handles;
+    cli_number crease;
     cli_smoothing smooth;
     cli_plane cut;
     cli_length max_move;

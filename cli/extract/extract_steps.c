@@ -55,6 +55,16 @@ static cw_simplify_desc simplify_desc(const cli_extract_run *s, double error)
     };
 }
 
+/* Unless it is said otherwise, the normals of caps part where triangles are large, and the file has a place for
+ * them. */
+static bool parts_caps(const cli_extract_args *args, const cli_volume *volume)
+{
+    const cw_format *format = cw_mesh_format(args->output, args->format);
+    return !args->crease.given && !args->open && !volume->streams && !args->labels &&
+           (args->lod.count || cli_extract_is_simplified(args)) && format &&
+           format->keeps & CW_KEEPS_CREASES;
+}
+
 void cli_extract_describe_stages(const cli_extract_args *args, const cli_volume *volume,
                                  cli_surface_settings *set)
 {
@@ -73,6 +83,8 @@ void cli_extract_describe_stages(const cli_extract_args *args, const cli_volume 
         .cull = args->pixel.cull,
         .atlas = args->texture.uv ? &set->atlas : NULL,
         .bake = cli_find_maps(&args->texture) ? &set->bake : NULL,
+        .crease_degrees = cli_crease_degrees(&args->crease),
+        .crease_caps = parts_caps(args, volume),
         .lod = args->lod.n,
         .lod_count = args->lod.count,
     };

@@ -34,6 +34,7 @@ const struct cli_kept cli_kept[] = {
     {CW_KEEPS_TEXTURE, "texture coordinates"},
     {CW_KEEPS_PICTURES, "pictures"},
     {CW_KEEPS_MATERIALS, "metallic-roughness and occlusion pictures"},
+    {CW_KEEPS_CREASES, "normals parted at creases"},
     {CW_KEEPS_ATTRIBUTES, "attributes"},
 };
 const size_t cli_kept_count = sizeof cli_kept / sizeof *cli_kept;

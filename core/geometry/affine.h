@@ -28,4 +28,13 @@ static inline void cwi_affine_cofactor(const double *a, double c[3][3])
         }
 }
 
+/* Computes the inverse of the linear part. Its determinant is not 0. */
+static inline void cwi_affine_invert(const double *a, double inverse[3][3])
+{
+    double cofactor[3][3];
+    cwi_affine_cofactor(a, cofactor);
+    for (int i = 0; i < 9; i++)
+        inverse[i % 3][i / 3] = cofactor[i / 3][i % 3] / cwi_affine_determinant(a);
+}
+
 #endif

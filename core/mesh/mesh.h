@@ -33,6 +33,10 @@ CW_NODISCARD cw_status cwi_mesh_copy(const cw_mesh *mesh, cw_mesh *copy, cw_erro
  * Returns  CW_ERR_NO_MEMORY, and the mesh is unchanged */
 CW_NODISCARD cw_status cwi_mesh_drop_marked(cw_mesh *mesh, const bool *marked, cw_error *err);
 
+/* Adds the normal of triangle t to sums[at[0]], sums[at[1]] and sums[at[2]], with the weights of its corners. */
+void cwi_add_corner_normals(const cw_mesh *mesh, size_t t, const uint32_t at[3],
+                            double (*sums)[3]);
+
 #ifdef __cplusplus
 }
 #endif

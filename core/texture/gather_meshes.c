@@ -19,15 +19,20 @@ cw_status cwi_gather_meshes(const cw_mesh *const *meshes, const double *scales, 
     cw_status st = CW_OK;
     *all = (cw_mesh){0};
     for (size_t n = 0; n < count && st == CW_OK; n++) {
-        cw_mesh bare = *meshes[n], copy = {0};
-        const cw_attribute *coordinates = texture ? cwi_texture_of(meshes[n]) : NULL;
+        cw_mesh split = {0}, copy = {0};
+        const bool parts = texture && normals && cwi_has_seams(meshes[n]);
+        st = parts ? cwi_split_seams(meshes[n], &split, err) : CW_OK;
+        cw_mesh bare = parts ? split : *meshes[n];
+        const cw_attribute *coordinates = texture ? cwi_texture_of(&bare) : NULL;
         bare.normals = normals ? bare.normals : NULL;
         bare.scalars = NULL;
         bare.colors = NULL;
         bare.labels = NULL;
         bare.attributes = (cw_attribute *)(uintptr_t)coordinates;
         bare.attribute_count = coordinates ? 1 : 0;
-        st = cwi_mesh_copy(&bare, &copy, err);
+        if (st == CW_OK)
+            st = cwi_mesh_copy(&bare, &copy, err);
+        cw_mesh_free(&split);
         if (st == CW_OK && scales)
             scale_places(&copy, scales[n]);
         if (st == CW_OK && n == 0) {

@@ -207,19 +207,11 @@ static void shade_chunk(void *context, size_t chunk)
         cwi_shade_vertex(s, v);
 }
 
-static void invert_affine(const cw_volume *v, double inverse[3][3])
-{
-    double cofactor[3][3];
-    cwi_affine_cofactor(v->affine[0], cofactor);
-    for (int i = 0; i < 9; i++)
-        inverse[i % 3][i / 3] = cofactor[i / 3][i % 3] / cwi_affine_determinant(v->affine[0]);
-}
-
 void cwi_shading_set_field(cwi_shading *s, const cw_volume *volume, bool invert)
 {
     s->volume = *volume;
     cwi_outward(volume, invert, s->outward);
-    invert_affine(volume, s->inverse);
+    cwi_affine_invert(volume->affine[0], s->inverse);
 }
 
 /* Bounds the error of a z coordinate that find_cell() finds. Positions are floats, relative to the
@@ -227,7 +219,7 @@ void cwi_shading_set_field(cwi_shading *s, const cw_volume *volume, bool invert)
 static double bound_rounding(const cw_volume *v)
 {
     double inverse[3][3], bound = 0;
-    invert_affine(v, inverse);
+    cwi_affine_invert(v->affine[0], inverse);
     for (int r = 0; r < 3; r++) {
         double half = 0, centre = fabs(v->affine[r][3]);
         for (int a = 0; a < 3; a++) {

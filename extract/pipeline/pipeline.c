@@ -83,6 +83,8 @@ static cw_status make_full(const cwi_pipeline *p, const cw_volume *volume, bool 
     desc.cull = false;
     desc.atlas = NULL;
     desc.bake = NULL;
+    desc.crease_degrees = 0;
+    desc.crease_caps = false;
     desc.extract.no_normals = desc.extract.no_normals || no_normals;
     desc.watch.end = NULL;
     cwi_pipeline full = {.desc = &desc, .volume = volume, .part = *volume};
@@ -113,6 +115,9 @@ cw_status cwi_begin_pipeline(cwi_pipeline *p, cw_surface_source source, cw_pipel
     CWI_REQUIRE_ARRAY(err, d->lod, d->lod_count);
     if (d->cull && !d->view_count)
         return cwi_fail(err, CW_ERR_ARGUMENT, "cull needs views; view_count is 0");
+    if (!(d->crease_degrees >= 0 && d->crease_degrees <= 180))
+        return cwi_fail(err, CW_ERR_ARGUMENT, "crease_degrees %g: expected 0 to 180",
+                        d->crease_degrees);
     if (d->color && !d->color->open)
         return cwi_fail(err, CW_ERR_ARGUMENT, "color->open is NULL");
     if (d->bake && !(d->atlas && (d->simplify || d->lod_count)))

@@ -56,7 +56,11 @@ static cw_status finish_normals(cwi_pipeline *p, cw_mesh *mesh, bool is_early, c
 {
     cw_status st =
         is_early && !p->desc->extract.no_normals ? cwi_add_normals(p, mesh, err) : CW_OK;
-    return st == CW_OK && !mesh->normals ? cw_mesh_normals(mesh, err) : st;
+    if (st == CW_OK && !mesh->normals)
+        st = cw_mesh_normals(mesh, err);
+    return st == CW_OK && is_early && cw_pipeline_stages(p->desc) >> CW_STAGE_CREASES & 1
+               ? cwi_part_normals(p, mesh, err)
+               : st;
 }
 
 cw_status cwi_bake_maps(cwi_pipeline *p, cw_mesh *mesh, cw_error *err)

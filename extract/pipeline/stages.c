@@ -80,6 +80,11 @@ static bool wants_maps(const cw_pipeline_desc *d)
     return d->bake != NULL;
 }
 
+static bool wants_creases(const cw_pipeline_desc *d)
+{
+    return !d->extract.no_normals && (d->crease_degrees > 0 || d->crease_caps);
+}
+
 static bool wants_check(const cw_pipeline_desc *d)
 {
     return d->check;
@@ -113,6 +118,7 @@ const cwi_stage cwi_recipe[CW_STAGE_COUNT] = {
     {CW_STAGE_LOD,        wants_levels,         WHOLE | LABELS, 0,       false, cwi_make_levels},
     {CW_STAGE_ATLAS,      wants_atlas,          WHOLE,          0,       false, cwi_lay_flat},
     {CW_STAGE_NORMALS,    wants_normals,        LABELS | PARTS, 0,       true,  cwi_add_normals},
+    {CW_STAGE_CREASES,    wants_creases,        WHOLE | LABELS, 0,       true,  cwi_part_normals},
     {CW_STAGE_COLOR,      wants_color,          WHOLE,          0,       true,  cwi_color_surface},
     {CW_STAGE_MAPS,       wants_maps,           WHOLE,          0,       true,  cwi_bake_maps},
     {CW_STAGE_CHECK,      wants_check,          LABELS | PARTS, 0,       true,  cwi_check_surface},

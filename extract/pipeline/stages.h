@@ -108,6 +108,7 @@ cw_status cwi_cull_surface(cwi_pipeline *p, cw_mesh *mesh, cw_error *err);
 cw_status cwi_make_levels(cwi_pipeline *p, cw_mesh *mesh, cw_error *err);
 cw_status cwi_lay_flat(cwi_pipeline *p, cw_mesh *mesh, cw_error *err);
 cw_status cwi_add_normals(cwi_pipeline *p, cw_mesh *mesh, cw_error *err);
+cw_status cwi_part_normals(cwi_pipeline *p, cw_mesh *mesh, cw_error *err);
 cw_status cwi_color_surface(cwi_pipeline *p, cw_mesh *mesh, cw_error *err);
 cw_status cwi_bake_maps(cwi_pipeline *p, cw_mesh *mesh, cw_error *err);
 cw_status cwi_check_surface(cwi_pipeline *p, cw_mesh *mesh, cw_error *err);

@@ -9,7 +9,7 @@ const cwi_format_driver cwi_format_glb = {
     .lost = "scalars, labels",
     .keeps = CW_KEEPS_SHARING | CW_KEEPS_PLACES | CW_KEEPS_NORMALS | CW_KEEPS_COLORS |
              CW_KEEPS_OPACITY | CW_KEEPS_PARTS | CW_KEEPS_AFFINE | CW_KEEPS_FACE_COLORS |
-             CW_KEEPS_TEXTURE | CW_KEEPS_PICTURES | CW_KEEPS_MATERIALS,
+             CW_KEEPS_TEXTURE | CW_KEEPS_PICTURES | CW_KEEPS_MATERIALS | CW_KEEPS_CREASES,
     .mesh = {.sniff = cwi_glb_sniff, .read = cwi_glb_read},
     .write = {.write = cwi_glb_write,
               .spools = true,
@@ -31,7 +31,7 @@ const cwi_format_driver cwi_format_gltf = {
     .lost = "scalars, labels",
     .keeps = CW_KEEPS_SHARING | CW_KEEPS_PLACES | CW_KEEPS_NORMALS | CW_KEEPS_COLORS |
              CW_KEEPS_OPACITY | CW_KEEPS_PARTS | CW_KEEPS_AFFINE | CW_KEEPS_FACE_COLORS |
-             CW_KEEPS_TEXTURE | CW_KEEPS_PICTURES | CW_KEEPS_MATERIALS,
+             CW_KEEPS_TEXTURE | CW_KEEPS_PICTURES | CW_KEEPS_MATERIALS | CW_KEEPS_CREASES,
     .mesh = {.sniff = cwi_gltf_sniff, .read = cwi_gltf_read},
     .write = {.write = cwi_gltf_write,
               .spools = true,

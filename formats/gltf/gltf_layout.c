@@ -125,7 +125,7 @@ static void take_arrays(cwi_part *part, const cw_mesh *split)
     part->texture = part->texture ? cwi_texture_of(split) : NULL;
 }
 
-/* Splits vertices at the seams of textures. */
+/* Splits vertices at the seams of textures, and at creases. */
 static cw_status split_at_seams(cwi_gltf_plan *plan, cw_error *err)
 {
     cw_status st = CW_OK;
@@ -134,7 +134,7 @@ static cw_status split_at_seams(cwi_gltf_plan *plan, cw_error *err)
         return cwi_fail_memory(err);
     for (size_t p = 0; p < plan->parts.count && st == CW_OK; p++) {
         cwi_part *part = &plan->parts.items[p];
-        if (!part->texture || part->texture->on != CW_ON_CORNERS)
+        if (!part->corner_normals && !(part->texture && part->texture->on == CW_ON_CORNERS))
             continue;
         st = cwi_split_seams(&part->mesh, &plan->seamed[p], err);
         if (st == CW_OK)

@@ -41,9 +41,10 @@ typedef struct cwi_part {
     const uint8_t
         *face_colors; /* CW_FACE_COLORS: triangle_count x 4; NULL: none that the file keeps */
     const cw_attribute *texture; /* CW_TEXTURE_COORDINATES; NULL: none that the file keeps */
-    const cw_textures *textures; /* as in cw_part, where the file keeps it */
+    const cw_attribute *corner_normals; /* CW_CORNER_NORMALS; NULL: none that the file keeps */
+    const cw_textures *textures;        /* as in cw_part, where the file keeps it */
     const uint32_t
-        *places; /* corners: numbers of their texture coordinates, for a writer's own use */
+        *places; /* corners: numbers of their places at seams, for a writer's own use */
     uint64_t first_place; /* as first, of these numbers */
     unsigned arrays; /* that the file holds: those of the mesh and, in a file of one mesh, those
                         that the label stands for; cw_keeps flags */

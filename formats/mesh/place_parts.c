@@ -92,13 +92,15 @@ static const uint8_t *find_face_colors(const cw_mesh *mesh)
 
 unsigned cwi_arrays_of(const cw_mesh *mesh)
 {
-    const size_t known =
-        (size_t)(find_face_colors(mesh) != NULL) + (size_t)(cwi_texture_of(mesh) != NULL);
+    const size_t known = (size_t)(find_face_colors(mesh) != NULL) +
+                         (size_t)(cwi_texture_of(mesh) != NULL) +
+                         (size_t)(cwi_corner_normals_of(mesh) != NULL);
     unsigned has =
         (mesh->normals ? CW_KEEPS_NORMALS : 0u) | (mesh->colors ? CW_KEEPS_COLORS : 0u) |
         (mesh->scalars ? CW_KEEPS_SCALARS : 0u) | (mesh->labels ? CW_KEEPS_LABELS : 0u) |
         (find_face_colors(mesh) ? CW_KEEPS_FACE_COLORS : 0u) |
         (cwi_texture_of(mesh) ? CW_KEEPS_TEXTURE : 0u) |
+        (cwi_corner_normals_of(mesh) ? CW_KEEPS_CREASES : 0u) |
         (mesh->attribute_count > known ? CW_KEEPS_ATTRIBUTES : 0u);
     for (int i = 0; i < 12; i++)
         has |= mesh->affine[i / 4][i % 4] != 0 ? CW_KEEPS_AFFINE : 0u;
@@ -154,6 +156,8 @@ static void choose_arrays(cwi_parts *parts, unsigned keeps)
         part->face_colors =
             part->arrays & CW_KEEPS_FACE_COLORS ? find_face_colors(&part->mesh) : NULL;
         part->texture = part->arrays & CW_KEEPS_TEXTURE ? cwi_texture_of(&part->mesh) : NULL;
+        part->corner_normals =
+            part->arrays & CW_KEEPS_CREASES ? cwi_corner_normals_of(&part->mesh) : NULL;
         part->textures = keeps & CW_KEEPS_PICTURES && part->texture ? part->textures : NULL;
         keep_arrays(&part->mesh, part->arrays);
         if (keeps & CW_KEEPS_PARTS && keeps & CW_KEEPS_COLORS)

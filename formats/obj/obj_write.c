@@ -27,6 +27,13 @@ static unsigned char *encode_place(const cwi_part *part, size_t v, unsigned char
     return cwi_put_text(to, "\n");
 }
 
+/* Returns where the values of a place stand: of corners, or of the vertices they are at. */
+static size_t value_of(const cwi_part *part, const cw_attribute *row, uint32_t corner)
+{
+    return row->components *
+           (size_t)(row->on == CW_ON_CORNERS ? corner : part->mesh.triangles[corner]);
+}
+
 static unsigned char *encode_normal(const cwi_part *part, size_t v, unsigned char *to)
 {
     return cwi_put_text(cwi_put_normal(cwi_put_text(to, "vn "), part, v), "\n");
@@ -61,6 +68,13 @@ static uint64_t place_of(const cwi_part *part, size_t t, int c)
            (part->places ? part->places[corner] : part->mesh.triangles[corner]);
 }
 
+/* Returns the number of a corner's normal in the file, from 0 on. vertex: that of its vertex */
+static uint64_t normal_of(const cwi_part *part, size_t t, int c, uint64_t vertex)
+{
+    return part->first_normal +
+           (part->corner_normals ? part->places[3 * t + (size_t)c] : vertex - part->first);
+}
+
 /* Encodes a face. Numbers start at 1, and continue from object to object. */
 static unsigned char *encode_face(const cwi_part *part, size_t t, unsigned char *to)
 {
@@ -68,13 +82,13 @@ static unsigned char *encode_face(const cwi_part *part, size_t t, unsigned char 
         to = encode_material(part, t, to);
     *to++ = 'f';
     for (int c = 0; c < 3; c++) {
-        const uint64_t number = cwi_corner_number(part, t, c) + 1;
-        to = cwi_put_integer(cwi_put_text(to, " "), number);
+        const uint64_t number = cwi_corner_number(part, t, c);
+        to = cwi_put_integer(cwi_put_text(to, " "), number + 1);
         if (part->texture)
             to = cwi_put_integer(cwi_put_text(to, "/"), place_of(part, t, c) + 1);
         if (part->arrays & CW_KEEPS_NORMALS)
             to = cwi_put_integer(cwi_put_text(to, part->texture ? "/" : "//"),
-                                 number - part->first + part->first_normal);
+                                 normal_of(part, t, c, number) + 1);
     }
     return cwi_put_text(to, "\n");
 }
@@ -182,6 +196,31 @@ static int digits_of_place(double v)
     return v > 0.5 || v < -0.5 ? DOUBLE_DIGITS : SINGLE_DIGITS + 1;
 }
 
+/* Writes normals: those of vertices, or where these part those of places. */
+static cw_status write_normals(cwi_part *part, const cwi_texture_seams *seams,
+                               cwi_mesh_output *out, uint64_t *normals, cw_error *err)
+{
+    cwi_part places = *part;
+    cw_status st = CW_OK;
+    part->first_normal = *normals;
+    *normals += part->corner_normals ? seams->count : part->mesh.vertex_count;
+    if (!part->corner_normals)
+        return cwi_write_records(part, CWI_VERTICES, out, encode_normal, err);
+    places.mesh.vertex_count = seams->count;
+    places.mesh.normals = cwi_alloc_zeroed(seams->count, 3 * sizeof *places.mesh.normals);
+    if (!places.mesh.normals)
+        return cwi_fail_memory(err);
+    for (size_t n = 0; n < seams->count; n++)
+        if (seams->corner[n] != CWI_NO_CORNER)
+            memcpy(places.mesh.normals + 3 * n,
+                   (const float *)part->corner_normals->data +
+                       value_of(part, part->corner_normals, seams->corner[n]),
+                   3 * sizeof(float));
+    st = cwi_write_records(&places, CWI_VERTICES, out, encode_normal, err);
+    cwi_free(places.mesh.normals);
+    return st;
+}
+
 /* Writes texture coordinates; in OBJ the second one goes up. seams: zeroed if vertices have them */
 static cw_status write_places(const cwi_part *part, const cwi_texture_seams *seams,
                               cwi_mesh_output *out, cw_error *err)
@@ -191,9 +230,11 @@ static cw_status write_places(const cwi_part *part, const cwi_texture_seams *sea
     const size_t count = seams->number ? seams->count : part->mesh.vertex_count;
     cw_status st = CW_OK;
     for (size_t n = 0; n < count && st == CW_OK; n++) {
-        const uint32_t at = seams->number ? seams->corner[n] : (uint32_t)n;
-        const double u = at == CWI_NO_CORNER ? 0 : (double)uv[2 * (size_t)at],
-                     v = at == CWI_NO_CORNER ? 0 : 1 - (double)uv[2 * (size_t)at + 1];
+        const bool is_none = seams->number && seams->corner[n] == CWI_NO_CORNER;
+        const size_t at = is_none         ? 0
+                          : seams->number ? value_of(part, part->texture, seams->corner[n])
+                                          : 2 * n;
+        const double u = is_none ? 0 : (double)uv[at], v = is_none ? 0 : 1 - (double)uv[at + 1];
         unsigned char *to = cwi_put_decimal(cwi_put_text(line, "vt "), u, SINGLE_DIGITS);
         to = cwi_put_text(cwi_put_decimal(cwi_put_text(to, " "), v, digits_of_place(v)), "\n");
         st = cwi_outfile_write(out->file, line, (size_t)(to - line), err);
@@ -201,16 +242,25 @@ static cw_status write_places(const cwi_part *part, const cwi_texture_seams *sea
     return st;
 }
 
-static cw_status write_faces(cwi_part *part, cwi_mesh_output *out, uint64_t *places,
+/* The numbers that the elements of the next object begin with. */
+typedef struct next_numbers {
+    uint64_t place, normal;
+} next_numbers;
+
+/* Writes what vertices have at several values, and the faces that name it. */
+static cw_status write_faces(cwi_part *part, cwi_mesh_output *out, next_numbers *next,
                              cw_error *err)
 {
     cwi_texture_seams seams = {0};
-    const bool has_seams = part->texture && part->texture->on == CW_ON_CORNERS;
+    const bool has_seams =
+        part->corner_normals || (part->texture && part->texture->on == CW_ON_CORNERS);
     cw_status st = has_seams ? cwi_seams_find(&part->mesh, &seams, err) : CW_OK;
-    part->first_place = *places;
+    part->first_place = next->place;
     part->places = seams.number;
+    if (st == CW_OK && part->arrays & CW_KEEPS_NORMALS)
+        st = write_normals(part, &seams, out, &next->normal, err);
     if (st == CW_OK && part->texture) {
-        *places += has_seams ? seams.count : part->mesh.vertex_count;
+        next->place += has_seams ? seams.count : part->mesh.vertex_count;
         st = write_places(part, &seams, out, err);
     }
     if (st == CW_OK)
@@ -221,7 +271,7 @@ static cw_status write_faces(cwi_part *part, cwi_mesh_output *out, uint64_t *pla
 }
 
 static cw_status write_object(const cwi_parts *parts, cwi_part *part, cwi_mesh_output *out,
-                              uint64_t *places, cw_error *err)
+                              next_numbers *next, cw_error *err)
 {
     char material[MATERIAL_BYTES];
     cw_status st = cwi_outfile_printf(out->file, err, "o %s\n", part->name);
@@ -234,9 +284,7 @@ static cw_status write_object(const cwi_parts *parts, cwi_part *part, cwi_mesh_o
     }
     if (st == CW_OK)
         st = cwi_write_records(part, CWI_VERTICES, out, encode_place, err);
-    if (st == CW_OK && part->arrays & CW_KEEPS_NORMALS)
-        st = cwi_write_records(part, CWI_VERTICES, out, encode_normal, err);
-    return st == CW_OK ? write_faces(part, out, places, err) : st;
+    return st == CW_OK ? write_faces(part, out, next, err) : st;
 }
 
 cw_status cwi_obj_write(const cwi_parts *parts, cwi_mesh_output *out, cw_error *err)
@@ -249,7 +297,7 @@ cw_status cwi_obj_write(const cwi_parts *parts, cwi_mesh_output *out, cw_error *
     out->total += last->arrays & CW_KEEPS_NORMALS ? last->mesh.vertex_count : 0;
     cw_status st =
         cwi_outfile_printf(out->file, err, "# cubewright %s, %s\n%s", CW_VERSION, axes, origin);
-    uint64_t places = 0;
+    next_numbers next = {0, 0};
     bool has_materials = has_face_colors(parts);
     for (size_t i = 0; i < parts->count; i++)
         has_materials =
@@ -257,6 +305,6 @@ cw_status cwi_obj_write(const cwi_parts *parts, cwi_mesh_output *out, cw_error *
     if (st == CW_OK && has_materials)
         st = write_materials(parts, out, err);
     for (size_t i = 0; i < parts->count && st == CW_OK; i++)
-        st = write_object(parts, &parts->items[i], out, &places, err);
+        st = write_object(parts, &parts->items[i], out, &next, err);
     return st;
 }

@@ -785,13 +785,14 @@ typedef enum cw_keeps {
     CW_KEEPS_AFFINE = 64,
     CW_KEEPS_PARTS = 128, /* several meshes, with names */
     CW_KEEPS_ATTRIBUTES =
-        256, /* those of cw_mesh.attributes but the two below: no format so far */
+        256, /* those of cw_mesh.attributes but the three below: no format so far */
     CW_KEEPS_FACE_COLORS = 512, /* CW_FACE_COLORS */
     CW_KEEPS_OPACITY = 1024,    /* of vertices, beside their colours */
     CW_KEEPS_TEXTURE = 2048,    /* CW_TEXTURE_COORDINATES; glTF splits vertices at seams */
     CW_KEEPS_PICTURES = 4096,   /* cw_part.textures: colour, normal and emissive pictures */
     CW_KEEPS_MATERIALS = 8192,  /* the other pictures, and factors */
-    CW_KEEPS_ALL = 16383
+    CW_KEEPS_CREASES = 16384,   /* CW_CORNER_NORMALS; glTF splits vertices at creases */
+    CW_KEEPS_ALL = 32767
 } cw_keeps;
 
 /* A format that this build or another one reads or writes. */

@@ -42,6 +42,11 @@ typedef struct cw_attribute {
  * know it. */
 #define CW_FACE_COLORS "face_colors"
 
+/* The name of the attribute with normals of corners: CW_ON_CORNERS, CW_F32, 3 components, unit length. Where
+ * corners at a vertex differ there is a crease; the normals of vertices stay beside them. Made by
+ * cw_mesh_crease_normals(). */
+#define CW_CORNER_NORMALS "corner_normals"
+
 /* Vertices and triangles. A zeroed struct is a valid empty mesh. Zero it before a call fills it: the
  * version says which members it has.
  *
@@ -101,6 +106,22 @@ CW_API bool cw_mesh_bounds(const cw_mesh *mesh, double min[3], double max[3]);
  * Returns  CW_ERR_ARGUMENT as cw_mesh_check(); CW_ERR_NO_MEMORY
  * Source   weights of corners [Max1999] */
 CW_NODISCARD CW_API cw_status cw_mesh_normals(cw_mesh *mesh, cw_error *err);
+
+/* Gives corners normals of their own where creases part the triangles around a vertex: those of the triangles
+ * on their side of the creases. All others keep the normal of their vertex. A crease is an edge between
+ * triangles whose directions differ by more than an angle, or that belong to different regions; triangles
+ * without area make none.
+ *
+ * mesh     gets the attribute CW_CORNER_NORMALS in place of the one that it has, or loses it where nothing is
+ *          a crease; without normals it gets those of cw_mesh_normals(), too
+ * degrees  the angle, 0 to 180; 180: only between regions
+ * regions  triangle_count numbers; NULL: all are of one region
+ * creases  set to the number of edges that are one; may be NULL
+ * Returns  CW_ERR_ARGUMENT  degrees is out of range, or as cw_mesh_check(); CW_ERR_LIMIT; CW_ERR_NO_MEMORY
+ * Source   weights of corners [Max1999] */
+CW_NODISCARD CW_API cw_status cw_mesh_crease_normals(cw_mesh *mesh, double degrees,
+                                                     const uint8_t *regions, size_t *creases,
+                                                     cw_error *err);
 
 /* Moves a mesh by an affine map of the world: scales, turns, mirrors and shifts it. Normals stay upright
  * on the surface; other attributes that are directions turn along. A map that mirrors turns the

@@ -20,7 +20,7 @@ extern "C" {
 
 /* The stages: constant, and name. They run in this order, but that handles are closed between
  * CW_STAGE_FILL_VOIDS and CW_STAGE_SMOOTH, texture coordinates are made between CW_STAGE_LOD and
- * CW_STAGE_NORMALS, and maps are baked between CW_STAGE_COLOR and CW_STAGE_CHECK. One that a later version
+ * CW_STAGE_NORMALS, which parts at creases next, and maps are baked between CW_STAGE_COLOR and CW_STAGE_CHECK. One that a later version
  * adds gets the next number, wherever it runs. */
 #define CW_STAGE_TABLE(X)                                                                      \
     X(CW_STAGE_VIEWS, "camera")                                                                \
@@ -38,7 +38,8 @@ extern "C" {
     X(CW_STAGE_CHECK, "check")                                                                 \
     X(CW_STAGE_HANDLES, "close_handles")                                                       \
     X(CW_STAGE_ATLAS, "uv")                                                                    \
-    X(CW_STAGE_MAPS, "maps")
+    X(CW_STAGE_MAPS, "maps")                                                                   \
+    X(CW_STAGE_CREASES, "crease_angle")
 
 /* Identifies a stage. */
 typedef enum cw_stage {
@@ -110,6 +111,9 @@ typedef struct cw_pipeline_desc {
         *atlas;               /* give it texture coordinates; levels of detail share a square */
     const cw_bake_desc *bake; /* bake maps of the surface before simplify or lod; needs atlas.
                                    Size and margin are those of the atlas */
+    double
+        crease_degrees; /* let normals part at edges with a larger angle: cw_mesh_crease_normals() */
+    bool crease_caps; /* the same where caps close the surface at the end of the volume */
 } cw_pipeline_desc;
 
 /* Results of the stages that ran; those of others are zero. Zero-initialise the struct before it is
@@ -131,6 +135,7 @@ typedef struct cw_pipeline_facts {
     cw_close_handles_facts handles; /* CW_STAGE_HANDLES */
     cw_atlas_facts atlas;           /* CW_STAGE_ATLAS: of the surface, or of all levels */
     cw_bake_facts baked;            /* CW_STAGE_MAPS: the same */
+    size_t creases; /* edges: CW_STAGE_CREASES, of the surface given away last */
 } cw_pipeline_facts;
 
 /* A finished surface, or a level of detail. */

@@ -25,7 +25,7 @@ from ._handles import Closed, close_handles
 from ._library import lib as _lib
 from ._memory import memory_limit, memory_used
 from ._mesh import Mesh
-from ._place import split, transform
+from ._place import crease_normals, split, transform
 from ._progress import Progress
 from ._read import Part, read_mesh, read_parts, read_volume
 from ._remesh import Remeshed, remesh
@@ -75,6 +75,7 @@ __all__ = [
     "boolean",
     "check",
     "close_handles",
+    "crease_normals",
     "color_by",
     "cut",
     "extract",

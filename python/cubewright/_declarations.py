@@ -49,6 +49,7 @@ CW_MAX_SLICES = 4
 CW_APPEARANCE_MAX_SIZE = 4096
 CW_APPEARANCE_MAX_VIEWS = 64
 CW_CAP_ANGLE_DEG = 160.0
+CW_CORNER_NORMALS = 'corner_normals'
 CW_EXTRACT_MAX_SNAP = 0.5
 CW_FACE_COLORS = 'face_colors'
 CW_FEM_MAX_ASPECT = 10.0
@@ -277,7 +278,8 @@ class cw_keeps(enum.IntEnum):
     CW_KEEPS_TEXTURE = 2048
     CW_KEEPS_PICTURES = 4096
     CW_KEEPS_MATERIALS = 8192
-    CW_KEEPS_ALL = 16383
+    CW_KEEPS_CREASES = 16384
+    CW_KEEPS_ALL = 32767
 
 
 class cw_mode(enum.IntEnum):
@@ -378,7 +380,8 @@ class cw_stage(enum.IntEnum):
     CW_STAGE_HANDLES = 13
     CW_STAGE_ATLAS = 14
     CW_STAGE_MAPS = 15
-    CW_STAGE_COUNT = 16
+    CW_STAGE_CREASES = 16
+    CW_STAGE_COUNT = 17
 
 
 class cw_surface_source(enum.IntEnum):
@@ -3378,6 +3381,8 @@ class cw_pipeline_desc(Structure):
     close_handles: Any
     atlas: Any
     bake: Any
+    crease_degrees: float
+    crease_caps: bool
 
 
 cw_pipeline_desc._fields_ = [
@@ -3402,6 +3407,8 @@ cw_pipeline_desc._fields_ = [
     ("close_handles", POINTER(cw_close_handles_desc)),
     ("atlas", POINTER(cw_atlas_desc)),
     ("bake", POINTER(cw_bake_desc)),
+    ("crease_degrees", c_double),
+    ("crease_caps", c_bool),
 ]
 
 
@@ -3424,6 +3431,7 @@ class cw_pipeline_facts(Structure):
     handles: Any
     atlas: Any
     baked: Any
+    creases: int
 
 
 cw_pipeline_facts._fields_ = [
@@ -3445,6 +3453,7 @@ cw_pipeline_facts._fields_ = [
     ("handles", cw_close_handles_facts),
     ("atlas", cw_atlas_facts),
     ("baked", cw_bake_facts),
+    ("creases", c_size_t),
 ]
 
 
@@ -3779,6 +3788,7 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "cw_mesh_check": (c_int, [POINTER(cw_mesh), POINTER(cw_error)]),
     "cw_mesh_bounds": (c_bool, [POINTER(cw_mesh), POINTER(c_double), POINTER(c_double)]),
     "cw_mesh_normals": (c_int, [POINTER(cw_mesh), POINTER(cw_error)]),
+    "cw_mesh_crease_normals": (c_int, [POINTER(cw_mesh), c_double, POINTER(c_uint8), POINTER(c_size_t), POINTER(cw_error)]),
     "cw_mesh_transform": (c_int, [POINTER(cw_mesh), POINTER(c_double), POINTER(cw_error)]),
     "cw_mesh_split": (c_int, [POINTER(cw_mesh), POINTER(POINTER(cw_mesh)), POINTER(c_size_t), POINTER(cw_error)]),
     "cw_meshes_free": (None, [POINTER(cw_mesh), c_size_t]),

@@ -24,6 +24,7 @@ from ._mesh import Mesh
 from ._options import (
     take_choice,
     take_count,
+    take_degrees,
     take_flag,
     take_length,
     take_number,
@@ -68,6 +69,7 @@ class Settings:
     cut_plane: tuple[Sequence[float], Sequence[float]] | None = None
     simplify: int | float | str | None = None
     uv: bool | dict[str, Any] = False
+    crease_angle: float | str | None = None
     color_by: AnyVolume | None = None
     colormap: str = "viridis"
     color_range: tuple[float, float] | None = None
@@ -112,6 +114,10 @@ class Settings:
             desc.simplify = pointer(c.cw_simplify_desc(triangles=take_count("simplify", self.simplify, 1)))
         if self.uv:
             desc.atlas = pointer(describe_atlas(**({} if self.uv is True else self.uv)))
+        if self.crease_angle == "caps":
+            desc.crease_caps = True
+        elif self.crease_angle is not None:
+            desc.crease_degrees = take_degrees("crease_angle", self.crease_angle)
         if self.color_by is not None:
             desc.color = pointer(describe_coloring(self.color_by, self.colormap, self.color_range))
         return desc
@@ -135,6 +141,7 @@ def extract(
     cut_plane: tuple[Sequence[float], Sequence[float]] | None = None,
     simplify: int | float | str | None = None,
     uv: bool | dict[str, Any] = False,
+    crease_angle: float | str | None = None,
     color_by: AnyVolume | None = None,
     colormap: str = "viridis",
     color_range: tuple[float, float] | None = None,
@@ -169,6 +176,8 @@ def extract(
     simplify    a float: error limit in mm; a text: the same with its unit, "0.1mm" or "0.5vox"; an int:
                 triangle count. See simplify()
     uv          make texture coordinates: True, or a dict of the keywords of atlas(): {"size": 1024}
+    crease_angle  degrees: let normals part at edges with a larger angle, as of crease_normals(); "caps": where
+                caps close the surface at the end of the volume
     color_by    another volume, whose values become scalars and colours. See color_by()
     colormap, color_range  the map, and the values of its ends; None: those of the vertices
     component, step  of volumes with several, from 0

@@ -31,6 +31,14 @@ def take_number(name: str, value: Any) -> float:
     return number
 
 
+def take_degrees(name: str, value: Any) -> float:
+    """Returns an angle above 0, and up to 180 degrees."""
+    degrees = take_number(name, value)
+    if not 0 < degrees <= 180:
+        raise ValueError(f"{name} is {degrees}; above 0, up to 180 degrees was expected")
+    return degrees
+
+
 MILLIMETRES = {"mm": 1.0, "um": 1e-3, "nm": 1e-6, "cm": 10.0, "m": 1000.0, "in": 25.4, "ft": 304.8}
 CUBIC_MILLIMETRES = {"mm3": 1.0, "um3": 1e-9, "cm3": 1e3, "ml": 1e3, "m3": 1e9}
 QUANTITY = re.compile(r"([-+]?[0-9.]+(?:e[-+]?[0-9]+)?)([a-z%]+3?)", re.IGNORECASE)

@@ -1,4 +1,4 @@
-"""Meshes moved by affine maps, and parted into solids."""
+"""Meshes moved by affine maps, parted into solids, and with normals that part at creases."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from . import _declarations as c
 from ._errors import call
 from ._library import lib
 from ._mesh import Mesh, take_mesh
+from ._options import take_degrees
 
 
 def transform(mesh: Mesh, matrix: npt.ArrayLike) -> Mesh:
@@ -47,4 +48,19 @@ def split(mesh: Mesh) -> list[Mesh]:
         lib.cw_meshes_free(solids, count)
 
 
-__all__ = ["split", "transform"]
+def crease_normals(mesh: Mesh, degrees: float) -> Mesh:
+    """Returns a copy whose corners have normals of their own where creases part the triangles around a vertex.
+
+    degrees  an edge between triangles whose directions differ by more is a crease
+
+    They are mesh.attributes["corner_normals"], (3 m, 3) float32 [Max1999]; a mesh without creases has none.
+    GLB, glTF and OBJ hold them. Vertices at equal positions count as different ones: weld() them first.
+    Raises Error: ARGUMENT (the arrays make no mesh), LIMIT (2**32 / 3 triangles), NO_MEMORY.
+    """
+    take_mesh("mesh", mesh)
+    parted = mesh.copy()
+    call(lib.cw_mesh_crease_normals, byref(parted._struct), take_degrees("degrees", degrees), None, None)
+    return parted
+
+
+__all__ = ["crease_normals", "split", "transform"]

@@ -203,7 +203,7 @@ static cw_status prepare(cwi_baking *b, const cw_mesh *mesh, const cw_mesh *full
 {
     double low[3], high[3];
     const double diagonal = cw_mesh_bounds(mesh, low, high) ? cwi_distance(low, high) : 0;
-    const bool at_corners = cwi_texture_of(mesh)->on == CW_ON_CORNERS;
+    const bool at_corners = cwi_has_seams(mesh);
     cw_status st =
         at_corners ? cwi_split_seams(mesh, &b->mesh, err) : cwi_mesh_copy(mesh, &b->mesh, err);
     b->full = full->normals ? full : &b->own;

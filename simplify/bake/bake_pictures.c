@@ -213,7 +213,7 @@ static cw_status make_pictures(carrying *b, cw_error *err)
 
 static cw_status prepare(carrying *b, const cw_mesh *mesh, const cw_bake_desc *d, cw_error *err)
 {
-    const bool at_corners = cwi_texture_of(mesh)->on == CW_ON_CORNERS;
+    const bool at_corners = cwi_has_seams(mesh);
     double low[3], high[3];
     b->size = d->size;
     b->ends = cwi_alloc_array(b->count, sizeof *b->ends);

@@ -73,6 +73,17 @@ class Surfaces(Case):
         expected = cw.color_by(whole, paint, colormap="inferno", low=-60, high=40)
         np.testing.assert_array_equal(painted.colors, expected.colors)
         np.testing.assert_array_equal(painted.scalars, expected.scalars)
+        parted = cw.crease_normals(whole, 40)
+        corners = parted.attributes["corner_normals"]
+        self.assertEqual(corners.shape, (3 * len(whole.triangles), 3))
+        angled = cw.extract(head, 300, crease_angle=40)
+        np.testing.assert_array_equal(angled.attributes["corner_normals"], corners)
+        capped = cw.extract(head, 300, crease_angle="caps")
+        self.assertGreater(capped.facts["creases"], 0)
+        self.assertNotIn("corner_normals", whole.attributes)
+        for wrong in (0, 181, float("nan")):
+            with self.assertRaises(ValueError):
+                cw.crease_normals(whole, wrong)
         self.same_mesh(cw.Extractor(head).extract(300, smooth="taubin"), cw.extract(head, 300, smooth="taubin"))
 
     def test_levels_come_from_a_volume_at_once(self):

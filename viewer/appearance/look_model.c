@@ -106,15 +106,14 @@ static cw_status put_maps(const cw_surface_look *s, const cw_mesh *mesh, size_t 
 
 /* --- all ---------------------------------------------------------------------------------- */
 
-/* Splits the vertices of textured surfaces at seams. split: count of them, empty for others */
+/* Splits the vertices of surfaces at seams and creases. split: count of them, empty for others */
 static cw_status split_surfaces(const cw_surface_look *surface, size_t count, cw_mesh *split,
                                 cw_error *err)
 {
     cw_status st = CW_OK;
     for (size_t n = 0; n < count && st == CW_OK; n++) {
         st = check_surface(&surface[n], n, err);
-        if (st == CW_OK && has_maps(&surface[n]) &&
-            cwi_texture_of(surface[n].mesh)->on == CW_ON_CORNERS)
+        if (st == CW_OK && cwi_has_seams(surface[n].mesh))
             st = cwi_split_seams(surface[n].mesh, &split[n], err);
     }
     return st;

@@ -499,7 +499,7 @@ static void labels_are_simplified_together_and_given_away_apart(void **state)
 
 /* --- rules ---------------------------------------------------------------------------------- */
 
-enum { TEXTURE = 1u << CW_STAGE_ATLAS | 1u << CW_STAGE_MAPS };
+enum { TEXTURE = 1u << CW_STAGE_ATLAS | 1u << CW_STAGE_MAPS, CREASES = 1u << CW_STAGE_CREASES };
 
 /* Stages that a source excludes, by themselves. */
 static const struct excluded {
@@ -510,12 +510,12 @@ static const struct excluded {
     {CW_SOURCE_SLICES, 1u << CW_STAGE_VIEWS | 1u << CW_STAGE_LARGEST |
                            1u << CW_STAGE_FILL_VOIDS | 1u << CW_STAGE_HANDLES |
                            1u << CW_STAGE_SMOOTH | 1u << CW_STAGE_CUT | 1u << CW_STAGE_CULL |
-                           1u << CW_STAGE_LOD | 1u << CW_STAGE_COLOR | TEXTURE},
+                           1u << CW_STAGE_LOD | 1u << CW_STAGE_COLOR | TEXTURE | CREASES},
     {CW_SOURCE_PARTS, 1u << CW_STAGE_VIEWS | 1u << CW_STAGE_LARGEST |
                           1u << CW_STAGE_FILL_VOIDS | 1u << CW_STAGE_HANDLES |
                           1u << CW_STAGE_SMOOTH | 1u << CW_STAGE_CUT | 1u << CW_STAGE_CULL |
                           1u << CW_STAGE_LOD | 1u << CW_STAGE_COLOR | 1u << CW_STAGE_SIMPLIFY |
-                          TEXTURE},
+                          TEXTURE | CREASES},
     {CW_SOURCE_LABELS, 1u << CW_STAGE_VIEWS | 1u << CW_STAGE_MIN_VOLUME |
                            1u << CW_STAGE_LARGEST | 1u << CW_STAGE_FILL_VOIDS |
                            1u << CW_STAGE_HANDLES | 1u << CW_STAGE_SMOOTH | 1u << CW_STAGE_CUT |

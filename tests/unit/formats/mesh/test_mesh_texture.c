@@ -2,6 +2,8 @@
 #include "support/meshes.h"
 #include "support/solids.h"
 
+#include "core/geometry/vec3.h"
+#include "core/mesh/mesh_triangle.h"
 #include "core/texture/split_seams.h"
 
 #include <cubewright/atlas.h>
@@ -157,6 +159,47 @@ static void coordinates_of_vertices_are_written_as_they_are(void **state)
     cw_mesh_free(&cube);
 }
 
+/* A cube has 24 normals in a file, and 8 vertices stay 8 where a format can say so. */
+static void creases_are_written(void **state)
+{
+    (void)state;
+    cw_error err = {0};
+    cw_write_loss loss;
+    cw_mesh cube, read = {0};
+    for (int textured = 0; textured < 2; textured++) {
+        make_textured(&cube);
+        if (!textured)
+            cw_mesh_attribute_remove(&cube, CW_TEXTURE_COORDINATES);
+        const cw_part part = {.mesh = &cube};
+        assert_ok(cw_mesh_crease_normals(&cube, 30, NULL, NULL, &err), err);
+        char *text = write_and_read(&cube, "k.obj", NULL);
+        assert_int_equal(count_words(text, "\nv "), 8);
+        assert_true(count_words(text, "\nvn ") >= 24);
+        assert_int_equal(count_words(text, "\nf "), 12);
+        free(text);
+        assert_ok(cw_parts_write_loss("k.ply", &part, 1, NULL, &loss, &err), err);
+        assert_true(loss.dropped & CW_KEEPS_CREASES);
+        assert_false(loss.dropped & CW_KEEPS_ATTRIBUTES);
+        if (cw_mesh_format("k.glb", NULL)->in_this_build) {
+            assert_ok(cw_parts_write_loss("k.glb", &part, 1, NULL, &loss, &err), err);
+            assert_int_equal(loss.dropped & (CW_KEEPS_CREASES | CW_KEEPS_ATTRIBUTES), 0);
+            assert_ok(cw_mesh_write(test_path("k.glb"), &cube, NULL, &err), err);
+            assert_ok(cw_mesh_read(test_path("k.glb"), NULL, &read, NULL, &err), err);
+            assert_int_equal(read.vertex_count, 24);
+            for (size_t c = 0; c < 3 * read.triangle_count; c++) {
+                double normal[3];
+                cwi_mesh_normal(&read, c / 3, normal);
+                assert_true(cwi_normalise(normal));
+                for (size_t a = 0; a < 3; a++)
+                    assert_near((double)read.normals[3 * (size_t)read.triangles[c] + a],
+                                normal[a], 1e-6);
+            }
+            cw_mesh_free(&read);
+        }
+        cw_mesh_free(&cube);
+    }
+}
+
 /* A normal map is in the file once, with tangents, and needs coordinates. */
 static void normal_maps_are_embedded(void **state)
 {
@@ -242,6 +285,8 @@ int main(void)
                                         test_folder_make, test_folder_remove),
         cmocka_unit_test_setup_teardown(coordinates_of_vertices_are_written_as_they_are,
                                         test_folder_make, test_folder_remove),
+        cmocka_unit_test_setup_teardown(creases_are_written, test_folder_make,
+                                        test_folder_remove),
         cmocka_unit_test_setup_teardown(normal_maps_are_embedded, test_folder_make,
                                         test_folder_remove),
         cmocka_unit_test(other_formats_tell_what_they_lose),
