@@ -314,6 +314,7 @@ static void put_compressed(cli_json *j, const cw_compressed *c)
     cli_json_number(j, "step_mm", c->step_mm);
     cli_json_number(j, "error_mm", c->error_mm);
     cli_json_number(j, "normal_degrees", c->normal_degrees);
+    cli_json_count(j, "settled_vertices", c->settled);
     cli_json_count(j, "merged_vertices", c->merged);
     cli_json_count(j, "flat_triangles", c->flat);
     cli_json_count(j, "dropped_triangles", c->dropped);

@@ -1,12 +1,18 @@
 /* Chooses the coarsest quantization grid that keeps the tolerance and the shape. */
 #include "formats/codec/quantization_grid.h"
 
+#include "core/base/memory.h"
 #include "core/base/status.h"
+#include "formats/codec/settle_points.h"
 
 #include <math.h>
 
 /* FLOAT_BITS: as many as floats have digits. Draco's memory doubles with each bit: 64 MiB at these. */
 enum { SHORT_BITS = 16, FLOAT_BITS = 24 };
+
+/* Places for points that fall onto others are sought if these are fewer than this part of all. */
+enum { MOST_MERGED = 4 };
+
 static const double DIAGONALS = 20000; /* the default tolerance is the diagonal divided by
                                           this */
 
@@ -86,52 +92,139 @@ static double measure_error(const cwi_quantization_grid *grid, const cwi_parts *
     return sqrt(worst);
 }
 
+static bool is_harmless(const cwi_grid_harm *harm)
+{
+    return !harm->merged && !harm->flat;
+}
+
+/* A grid that is sought. */
+typedef struct grid_search {
+    cwi_quantization_grid *grid;
+    cwi_parts *parts;
+    const cw_mesh *given; /* the meshes of the parts as they came */
+    cwi_settler settler;
+    cwi_grid_harm harm;
+    cw_compressed *facts;
+    float *settled; /* positions of all parts; NULL: they are as they came */
+} grid_search;
+
+/* Gives parts the positions of an array, or those that they came with. */
+static void set_positions(grid_search *s, float *positions)
+{
+    for (size_t p = 0; p < s->parts->count; p++) {
+        s->parts->items[p].mesh.positions = positions ? positions : s->given[p].positions;
+        positions += positions ? 3 * s->given[p].vertex_count : 0;
+    }
+}
+
+/* Returns true if few enough points share their places for others to be found. */
+static bool may_settle(const grid_search *s)
+{
+    size_t points = 0;
+    for (size_t p = 0; p < s->parts->count; p++)
+        points += s->parts->items[p].mesh.vertex_count;
+    return s->harm.merged < points / MOST_MERGED;
+}
+
+/* Moves points to places of their own, if there are some within most_mm. */
+static cw_status settle_points(grid_search *s, double most_mm, cw_error *err)
+{
+    cw_compressed *f = s->facts;
+    cwi_grid_harm harm;
+    cw_status st = s->settler.points ? CW_OK : cwi_settler_init(&s->settler, s->parts, err);
+    if (st != CW_OK || !cwi_settle_points(&s->settler, s->grid, most_mm, &f->settled)) {
+        f->settled = 0;
+        return st;
+    }
+    cwi_settler_move(&s->settler, s->grid, &f->error_mm);
+    set_positions(s, s->settler.points);
+    st = cwi_grid_measure(s->grid, s->parts, &harm, err);
+    if (st == CW_OK && is_harmless(&harm)) {
+        s->harm = harm;
+        s->settled = s->settler.points;
+        s->settler.points = NULL;
+    } else { /* decoders' single precision joins them */
+        set_positions(s, NULL);
+        f->settled = 0;
+    }
+    cwi_settler_free(&s->settler);
+    return st;
+}
+
+/* Measures a grid, and makes it harmless if that can be. */
+static cw_status try_grid(grid_search *s, double most_mm, cw_error *err)
+{
+    cw_status st = cwi_grid_measure(s->grid, s->parts, &s->harm, err);
+    return st == CW_OK && !is_harmless(&s->harm) && may_settle(s)
+               ? settle_points(s, most_mm, err)
+               : st;
+}
+
 /* Finds the coarsest grid that keeps tolerance and shape; *found is false when none does. */
-static cw_status find_grid(cwi_quantization_grid *grid, const cwi_parts *parts,
-                           cw_compression kind, double tolerance, bool *found,
-                           cwi_grid_harm *harm, cw_error *err)
+static cw_status find_grid(grid_search *s, cw_compression kind, double tolerance, bool *found,
+                           cw_error *err)
 {
     const int max = kinds[kind].max_chosen;
     cw_status st = CW_OK;
     *found = false;
     for (int bits = 1; bits <= max && st == CW_OK && !*found; bits++) {
-        lay_grid(grid, kind, bits);
-        const bool fine =
-            cwi_grid_error(grid) <= tolerance && measure_error(grid, parts) <= tolerance;
-        if (fine || bits == max)
-            st = cwi_grid_measure(grid, parts, harm, err);
-        *found = fine && harm->merged == 0 && harm->flat == 0;
+        lay_grid(s->grid, kind, bits);
+        const bool fine = cwi_grid_error(s->grid) <= tolerance &&
+                          measure_error(s->grid, s->parts) <= tolerance;
+        if (fine)
+            st = try_grid(s, tolerance, err);
+        else if (bits == max)
+            st = cwi_grid_measure(s->grid, s->parts, &s->harm, err);
+        *found = fine && is_harmless(&s->harm);
     }
     return st;
 }
 
-cw_status cwi_grid_choose(cwi_quantization_grid *grid, const cwi_parts *parts,
-                          const cw_write_desc *desc, cw_compressed *facts, cw_error *err)
+static cw_status choose(grid_search *s, const cw_write_desc *desc, cw_error *err)
 {
-    cwi_grid_harm harm = {0};
+    const double tolerance =
+        desc->tolerance_mm > 0 ? desc->tolerance_mm : default_tolerance(s->parts, s->grid);
+    cw_compressed *f = s->facts;
     bool found = true;
     cw_status st;
-    *grid = cwi_grid_around(parts);
-    if (!isfinite(grid->range))
-        return cwi_fail(err, CW_ERR_LIMIT, "the box is too large to be divided into steps");
-    const double tolerance =
-        desc->tolerance_mm > 0 ? desc->tolerance_mm : default_tolerance(parts, grid);
     if (desc->bits) {
-        lay_grid(grid, desc->compression, desc->bits);
-        st = cwi_grid_measure(grid, parts, &harm, err);
+        lay_grid(s->grid, desc->compression, desc->bits);
+        st = try_grid(s, INFINITY, err);
     } else {
-        st = find_grid(grid, parts, desc->compression, tolerance, &found, &harm, err);
+        st = find_grid(s, desc->compression, tolerance, &found, err);
     }
     if (st == CW_OK && !found && desc->compression != CW_COMPRESS_QUANTIZE)
-        grid->bits = 0; /* positions then stay unchanged */
+        s->grid->bits = 0; /* positions then stay unchanged */
     else if (st == CW_OK && !found)
-        return fail_shape(grid, &harm, tolerance, err);
+        return fail_shape(s->grid, &s->harm, tolerance, err);
     if (st == CW_OK && found) {
-        facts->merged = harm.merged;
-        facts->flat = harm.flat;
-        facts->step_mm = grid->step;
-        facts->error_mm = measure_error(grid, parts);
+        f->merged = s->harm.merged;
+        f->flat = s->harm.flat;
+        f->step_mm = s->grid->step;
+        f->error_mm = s->settled ? f->error_mm : measure_error(s->grid, s->parts);
     }
-    facts->bits = grid->bits;
+    f->bits = s->grid->bits;
+    return st;
+}
+
+cw_status cwi_grid_choose(cwi_quantization_grid *grid, cwi_parts *parts,
+                          const cw_write_desc *desc, float **settled, cw_compressed *facts,
+                          cw_error *err)
+{
+    cw_mesh *given = cwi_alloc_array(parts->count, sizeof *given);
+    grid_search s = {.grid = grid, .parts = parts, .given = given, .facts = facts};
+    *settled = NULL;
+    *grid = cwi_grid_around(parts);
+    if (!given)
+        return cwi_fail_memory(err);
+    for (size_t p = 0; p < parts->count; p++)
+        given[p] = parts->items[p].mesh;
+    cw_status st =
+        isfinite(grid->range)
+            ? choose(&s, desc, err)
+            : cwi_fail(err, CW_ERR_LIMIT, "the box is too large to be divided into steps");
+    *settled = s.settled;
+    cwi_settler_free(&s.settler);
+    cwi_free(given);
     return st;
 }

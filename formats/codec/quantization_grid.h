@@ -94,14 +94,18 @@ static inline double cwi_grid_middle(const cwi_quantization_grid *grid, int axis
 CW_NODISCARD cw_status cwi_grid_check_bits(const cw_write_desc *desc, cw_error *err);
 
 /* Lays the coarsest grid around the parts, of one origin, that keeps the tolerance and the
- * shape. With stated bits it lays that grid, whatever the effect on the shape.
+ * shape: where points that rounding would put onto each other go to places beside, if need be. With stated bits it
+ * lays that grid, whatever the effect on the shape.
  * grid     bits 0: 24 bits are too few for meshopt and Draco, positions stay unchanged
- * facts    bits, step, error and harm are filled in
+ * parts    their positions are replaced, if points went to places beside
+ * settled  set to the array that then holds the positions of all parts; free it after them with cwi_free(). NULL:
+ *          they are as they were
+ * facts    bits, step, error, settled and harm are filled in
  * Returns  CW_ERR_CHECK when there is none; CW_ERR_LIMIT for a box too large;
  * CW_ERR_NO_MEMORY */
-CW_NODISCARD cw_status cwi_grid_choose(cwi_quantization_grid *grid, const cwi_parts *parts,
-                                       const cw_write_desc *desc, cw_compressed *facts,
-                                       cw_error *err);
+CW_NODISCARD cw_status cwi_grid_choose(cwi_quantization_grid *grid, cwi_parts *parts,
+                                       const cw_write_desc *desc, float **settled,
+                                       cw_compressed *facts, cw_error *err);
 
 /* Counts the harm over all meshes together. Returns CW_ERR_NO_MEMORY. */
 CW_NODISCARD cw_status cwi_grid_measure(const cwi_quantization_grid *grid,

@@ -50,7 +50,8 @@ cw_status cwi_drc_write(const cwi_parts *parts, cwi_mesh_output *out, cw_error *
 {
     const cw_write_desc *desc = out->desc;
     cwi_part whole = {.name = ""};
-    const cwi_parts one = {.items = &whole, .count = 1};
+    cwi_parts one = {.items = &whole, .count = 1};
+    float *settled = NULL, *positions = NULL;
     cwi_draco_packed packed = {0};
     cw_compressed facts = {0};
     cwi_quantization_grid grid;
@@ -64,7 +65,8 @@ cw_status cwi_drc_write(const cwi_parts *parts, cwi_mesh_output *out, cw_error *
     if (st == CW_OK) {
         facts.dropped = cwi_draco_count_degenerate(&whole.mesh);
         cwi_draco_drop_degenerate(&whole.mesh);
-        st = cwi_grid_choose(&grid, &one, desc, &facts, err);
+        positions = whole.mesh.positions;
+        st = cwi_grid_choose(&grid, &one, desc, &settled, &facts, err);
     }
     if (st == CW_OK)
         st = cwi_draco_pack(&whole.mesh, whole.mesh.colors, NULL, NULL, &grid, comment, desc,
@@ -77,6 +79,8 @@ cw_status cwi_drc_write(const cwi_parts *parts, cwi_mesh_output *out, cw_error *
     if (st == CW_OK && desc->compressed)
         *desc->compressed = facts;
     cwi_draco_packed_free(&packed);
+    whole.mesh.positions = settled ? positions : whole.mesh.positions;
+    cwi_free(settled);
     cw_mesh_free(&whole.mesh);
     return st;
 }

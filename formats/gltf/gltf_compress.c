@@ -318,6 +318,17 @@ static cw_status compress_pieces(cwi_gltf_plan *plan, const cw_write_desc *desc,
     return st;
 }
 
+/* Keeps moved positions in the arrays of parts that are copies, which are put in another order together. */
+static void own_positions(cwi_gltf_plan *plan)
+{
+    for (size_t p = 0; plan->settled && plan->own && p < plan->parts.count; p++) {
+        cw_mesh *m = &plan->parts.items[p].mesh;
+        memcpy(plan->own[p].positions, m->positions,
+               3 * m->vertex_count * sizeof *m->positions);
+        m->positions = plan->own[p].positions;
+    }
+}
+
 cw_status cwi_gltf_compress(cwi_gltf_plan *plan, const cw_write_desc *desc, cw_error *err)
 {
     const bool meshopt = desc->compression == CW_COMPRESS_MESHOPT;
@@ -330,9 +341,10 @@ cw_status cwi_gltf_compress(cwi_gltf_plan *plan, const cw_write_desc *desc, cw_e
     for (size_t p = 0; st == CW_OK && facts.dropped && p < plan->parts.count; p++)
         cwi_draco_drop_degenerate(&plan->parts.items[p].mesh);
     if (st == CW_OK)
-        st = cwi_grid_choose(&plan->grid, &plan->parts, desc, &facts, err);
+        st = cwi_grid_choose(&plan->grid, &plan->parts, desc, &plan->settled, &facts, err);
     if (st != CW_OK)
         return st;
+    own_positions(plan);
     plan->rounded = desc->compression != CW_COMPRESS_DRACO;
     if (plan->rounded)
         measure_normals(plan, &facts);

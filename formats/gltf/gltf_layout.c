@@ -33,6 +33,7 @@ void cwi_gltf_plan_free(cwi_gltf_plan *plan)
     cwi_free(plan->keys);
     cwi_free(plan->own);
     cwi_free(plan->split);
+    cwi_free(plan->settled);
     cwi_free(plan->seamed);
     cwi_free(plan->pieces);
     cwi_free(plan->parts.items);

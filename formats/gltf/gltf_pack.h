@@ -18,6 +18,8 @@ typedef struct cwi_gltf_plan {
     cw_mesh
         *seamed;    /* the arrays of parts whose vertices were split at seams of the texture, */
     cw_mesh *split; /* and of those split by colour after that */
+    float *
+        settled; /* positions of all parts, where the grid moved some; NULL: they are as they came */
     cwi_gltf_piece *pieces;
     cwi_gltf_document document;
     bool rounded;               /* positions are on the grid, and normals are bytes */

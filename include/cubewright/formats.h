@@ -569,6 +569,9 @@ typedef struct cw_compressed {
     size_t fragments;          /* meshes in the nodes of an octree: neuroglancer alone */
     uint64_t bytes;            /* of the arrays in the file */
     double encode_s, decode_s; /* times to encode, and to check the decoded data */
+    size_t
+        settled; /* positions that are not the nearest of the grid: rounding would have put points
+                       onto each other, or a triangle into a line */
 } cw_compressed;
 
 /* A line on the origin of a mesh, for the file's own record. */

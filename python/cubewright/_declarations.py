@@ -2296,6 +2296,7 @@ class cw_compressed(Structure):
     bytes: int
     encode_s: float
     decode_s: float
+    settled: int
 
 
 cw_compressed._fields_ = [
@@ -2310,6 +2311,7 @@ cw_compressed._fields_ = [
     ("bytes", c_uint64),
     ("encode_s", c_double),
     ("decode_s", c_double),
+    ("settled", c_size_t),
 ]
 
 

@@ -363,9 +363,10 @@ static void what_a_format_does_not_keep_is_told(void **state)
         {"a.obj", CW_KEEPS_SCALARS | CW_KEEPS_LABELS | CW_KEEPS_AFFINE},
         {"a.3mf", CW_KEEPS_NORMALS | CW_KEEPS_SCALARS | CW_KEEPS_LABELS | CW_KEEPS_AFFINE},
         {"a.stl",
-         CW_KEEPS_ALL & ~(unsigned)(CW_KEEPS_OPACITY | CW_KEEPS_PLACES | CW_KEEPS_PARTS |
-                                    CW_KEEPS_ATTRIBUTES | CW_KEEPS_TEXTURE | CW_KEEPS_PICTURES |
-                                    CW_KEEPS_MATERIALS | CW_KEEPS_FACE_COLORS)},
+         CW_KEEPS_ALL &
+             ~(unsigned)(CW_KEEPS_OPACITY | CW_KEEPS_PLACES | CW_KEEPS_PARTS |
+                         CW_KEEPS_ATTRIBUTES | CW_KEEPS_TEXTURE | CW_KEEPS_PICTURES |
+                         CW_KEEPS_MATERIALS | CW_KEEPS_FACE_COLORS | CW_KEEPS_CREASES)},
     };
     static uint8_t colors[32];
     static float scalars[8];
@@ -390,7 +391,8 @@ static void what_a_format_does_not_keep_is_told(void **state)
     assert_int_equal(loss.dropped,
                      CW_KEEPS_ALL & ~(unsigned)(CW_KEEPS_ATTRIBUTES | CW_KEEPS_TEXTURE |
                                                 CW_KEEPS_PICTURES | CW_KEEPS_MATERIALS |
-                                                CW_KEEPS_FACE_COLORS | CW_KEEPS_OPACITY));
+                                                CW_KEEPS_FACE_COLORS | CW_KEEPS_OPACITY |
+                                                CW_KEEPS_CREASES));
     mesh.colors = NULL;
     mesh.scalars = NULL;
     mesh.labels = NULL;
