@@ -12,7 +12,7 @@
 #include <math.h>
 #include <string.h>
 
-/* REACH: a point goes to a place at most so many steps away along each axis. */
+/* REACH: steps along each axis, at most, from the nearest place of a point to the one that it gets. */
 enum { REACH = 2, SIDE = 2 * REACH + 1, PLACES = SIDE * SIDE * SIDE, PASSES = 4 };
 
 /* In the table of cells. */
