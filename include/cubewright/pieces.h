@@ -23,7 +23,7 @@ typedef struct cw_pieces_desc {
     bool dowels;      /* default: pegs of one piece go into holes of its neighbour. Else both
                                 have holes, and dowels are pieces of their own */
     double
-        peg_diameter_mm;  /* default: 8, or less where the widest region has no room for that */
+        peg_diameter_mm;  /* default: 8, or less where the widest region has no room for them */
     double peg_length_mm; /* beyond the section; of a dowel as a whole. Default: 1.5 diameters,
                                 of a dowel 3 */
     double

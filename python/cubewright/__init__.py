@@ -25,6 +25,7 @@ from ._handles import Closed, close_handles
 from ._library import lib as _lib
 from ._memory import memory_limit, memory_used
 from ._mesh import Mesh
+from ._pieces import Piece, Pieces, cut_pieces
 from ._place import split, transform
 from ._progress import Progress
 from ._read import Part, read_mesh, read_parts, read_volume
@@ -55,6 +56,8 @@ __all__ = [
     "Mesh",
     "Part",
     "Patch",
+    "Piece",
+    "Pieces",
     "Progress",
     "Remeshed",
     "Repaired",
@@ -77,6 +80,7 @@ __all__ = [
     "close_handles",
     "color_by",
     "cut",
+    "cut_pieces",
     "extract",
     "extract_labels",
     "extract_levels",

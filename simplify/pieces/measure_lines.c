@@ -34,13 +34,37 @@ typedef struct line_grid {
 static int compare_meetings(const void *x, const void *y)
 {
     const meeting *a = x, *b = y;
-    if (a->line != b->line)
-        return a->line < b->line ? -1 : 1;
     if (a->at != b->at)
         return a->at < b->at ? -1 : 1;
     if (a->solid != b->solid)
         return a->solid < b->solid ? -1 : 1;
     return a->step - b->step;
+}
+
+/* Sorts meetings by line, and those of a line by place. starts: lines + 1, zeroed
+ * Returns false when memory is out. */
+static bool sort_meetings(line_grid *g, size_t *starts)
+{
+    meeting *sorted = cwi_alloc_array(g->count, sizeof *sorted);
+    const size_t lines = g->nu * g->nv;
+    if (!sorted)
+        return false;
+    for (size_t n = 0; n < g->count; n++)
+        starts[g->meetings[n].line + 1]++;
+    for (size_t n = 0; n < lines; n++)
+        starts[n + 1] += starts[n];
+    for (size_t n = 0; n < g->count; n++)
+        sorted[starts[g->meetings[n].line]++] = g->meetings[n];
+    for (size_t n = lines; n > 0; n--)
+        starts[n] = starts[n - 1];
+    starts[0] = 0;
+    for (size_t n = 0; n < lines; n++)
+        if (starts[n + 1] > starts[n] + 1)
+            qsort(sorted + starts[n], starts[n + 1] - starts[n], sizeof *sorted,
+                  compare_meetings);
+    cwi_free(g->meetings);
+    g->meetings = sorted;
+    return true;
 }
 
 /* Returns the number of the first line at or behind a coordinate. */
@@ -158,13 +182,13 @@ cw_status cwi_measure_lines(const cw_mesh *meshes, size_t count, int axis, cw_as
     bool is_done = winding;
     for (size_t n = 0; n < count && is_done; n++)
         is_done = add_solid(&g, &meshes[n], (uint32_t)n);
-    if (is_done && g.count)
-        qsort(g.meetings, g.count, sizeof *g.meetings, compare_meetings);
-    for (size_t n = 0, end; n < g.count && is_done; n = end) {
-        for (end = n + 1; end < g.count && g.meetings[end].line == g.meetings[n].line; end++) {
-        }
-        sum_line(g.meetings + n, end - n, winding, g.cell * g.cell / 3, facts);
-    }
+    size_t *starts = is_done ? cwi_alloc_zeroed(g.nu * g.nv + 1, sizeof *starts) : NULL;
+    is_done = starts && sort_meetings(&g, starts);
+    for (size_t n = 0; n < g.nu * g.nv && is_done; n++)
+        if (starts[n + 1] > starts[n])
+            sum_line(g.meetings + starts[n], starts[n + 1] - starts[n], winding,
+                     g.cell * g.cell / 3, facts);
+    cwi_free(starts);
     cwi_free(winding);
     cwi_free(g.meetings);
     return is_done ? CW_OK : cwi_fail_memory(err);

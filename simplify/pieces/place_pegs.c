@@ -356,6 +356,15 @@ static cw_status find_widest(cwi_cutter *c, size_t n, double *reach, cw_error *e
     return st;
 }
 
+/* Returns the diameter of pegs by default, of the widest that has room alone: as many circles fit into a circle of
+ * that size. */
+static double find_fraction(size_t pegs)
+{
+    static const double fractions[] = {0.8, 0.5, 0.46, 0.41, 0.37, 0.33};
+    const size_t count = sizeof fractions / sizeof *fractions;
+    return pegs <= count ? fractions[pegs - 1] : 0.8 / sqrt((double)pegs);
+}
+
 /* Fills in the sizes that were not given. reach: the largest of all sections */
 static void choose_sizes(cw_pieces_desc *d, double reach)
 {
@@ -363,7 +372,7 @@ static void choose_sizes(cw_pieces_desc *d, double reach)
     if (d->clearance_mm == 0)
         d->clearance_mm = 0.2;
     if (d->peg_diameter_mm == 0)
-        d->peg_diameter_mm = fmin(max, 0.8 * cwi_widest_peg(d, reach));
+        d->peg_diameter_mm = fmin(max, find_fraction(d->pegs) * cwi_widest_peg(d, reach));
     if (d->wall_mm == 0)
         d->wall_mm = CWI_PEG_WALL * d->peg_diameter_mm;
     if (d->peg_length_mm == 0)
