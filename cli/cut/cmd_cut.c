@@ -147,8 +147,10 @@ static cw_status list_planes(cli_mesh_run *r, double reserve_mm, cw_error *err)
     cw_cut_desc *more = NULL;
     size_t count = 0;
     cw_status st = CW_OK;
+    cw_plate_desc plate = {.reserve_mm = reserve_mm};
+    memcpy(plate.plate_mm, args->plate.mm, sizeof plate.plate_mm);
     if (args->plate.given)
-        st = cw_plate_planes(&r->mesh.mesh, args->plate.mm, reserve_mm, &more, &count, err);
+        st = cw_plate_planes(&r->mesh.mesh, &plate, &more, &count, err);
     s->planes = st == CW_OK ? calloc(args->planes.count + count + 1, sizeof *s->planes) : NULL;
     if (st == CW_OK && !s->planes)
         st = cwi_fail_memory(err);

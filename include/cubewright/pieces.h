@@ -123,21 +123,27 @@ CW_NODISCARD CW_API cw_status cw_pieces_cut(const cw_mesh *mesh, const cw_cut_de
 /* Frees all that the pieces hold and zeroes the struct. Harmless on zeroed ones. */
 CW_API void cw_pieces_free(cw_pieces *pieces);
 
+/* A plate that pieces have to fit. Zero fields mean the default named beside them. */
+typedef struct cw_plate_desc {
+    uint32_t version;   /* 0: the first version of this struct */
+    double plate_mm[3]; /* width, depth and height, along x, y and z; required */
+    double reserve_mm;  /* length of a peg that stands out of a piece; default: none does */
+} cw_plate_desc;
+
 /* Plans cuts across the axes, so that all pieces fit on a plate: equal parts along each axis along which
  * the mesh is longer.
  *
- * mesh       borrowed
- * plate_mm   width, depth and height, along x, y and z
- * reserve_mm length of a peg that stands out of a piece; 0: none does
- * planes     set to an array, first across x, then y and z, from low to high; free it with
- *            cw_planes_free(). NULL if nothing is to cut
- * count      set to their number
- * Returns    CW_ERR_ARGUMENT  a side of the plate is not above 0 or not above the reserve, or as
- *                             cw_mesh_check()
- *            CW_ERR_LIMIT     more than CW_MAX_CUT_PLANES; CW_ERR_NO_MEMORY */
-CW_NODISCARD CW_API cw_status cw_plate_planes(const cw_mesh *mesh, const double plate_mm[3],
-                                              double reserve_mm, cw_cut_desc **planes,
-                                              size_t *count, cw_error *err);
+ * mesh     borrowed
+ * desc     borrowed
+ * planes   set to an array, first across x, then y and z, from low to high; free it with
+ *          cw_planes_free(). NULL if nothing is to cut
+ * count    set to their number
+ * Returns  CW_ERR_ARGUMENT  a side of the plate is not above 0 or not above the reserve, or as
+ *                           cw_mesh_check()
+ *          CW_ERR_LIMIT     more than CW_MAX_CUT_PLANES; CW_ERR_NO_MEMORY */
+CW_NODISCARD CW_API cw_status cw_plate_planes(const cw_mesh *mesh, const cw_plate_desc *desc,
+                                              cw_cut_desc **planes, size_t *count,
+                                              cw_error *err);
 
 /* Frees an array of planes. NULL is allowed. */
 CW_API void cw_planes_free(cw_cut_desc *planes);

@@ -3322,6 +3322,19 @@ cw_pieces._fields_ = [
 ]
 
 
+class cw_plate_desc(Structure):
+    version: int
+    plate_mm: Any
+    reserve_mm: float
+
+
+cw_plate_desc._fields_ = [
+    ("version", c_uint32),
+    ("plate_mm", c_double * 3),
+    ("reserve_mm", c_double),
+]
+
+
 class cw_lay_desc(Structure):
     version: int
     plate_mm: Any
@@ -4158,7 +4171,7 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "cw_image_tile": (c_int, [POINTER(cw_image), c_size_t, c_size_t, c_size_t, POINTER(c_uint8), POINTER(cw_image), POINTER(cw_error)]),
     "cw_pieces_cut": (c_int, [POINTER(cw_mesh), POINTER(cw_cut_desc), c_size_t, POINTER(cw_pieces_desc), POINTER(cw_pieces), POINTER(cw_error)]),
     "cw_pieces_free": (None, [POINTER(cw_pieces)]),
-    "cw_plate_planes": (c_int, [POINTER(cw_mesh), POINTER(c_double), c_double, POINTER(POINTER(cw_cut_desc)), POINTER(c_size_t), POINTER(cw_error)]),
+    "cw_plate_planes": (c_int, [POINTER(cw_mesh), POINTER(cw_plate_desc), POINTER(POINTER(cw_cut_desc)), POINTER(c_size_t), POINTER(cw_error)]),
     "cw_planes_free": (None, [POINTER(cw_cut_desc)]),
     "cw_pieces_lay": (c_int, [POINTER(cw_pieces), POINTER(cw_lay_desc), POINTER(c_size_t), POINTER(cw_error)]),
     "cw_pieces_assemble": (c_int, [POINTER(cw_pieces), POINTER(cw_mesh), c_int, POINTER(cw_progress), POINTER(cw_assembled), POINTER(cw_error)]),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from ctypes import POINTER, byref, c_double, c_size_t
+from ctypes import POINTER, byref, c_size_t
 from dataclasses import dataclass
 
 from . import _declarations as c
@@ -99,8 +99,9 @@ def cut_pieces(
         if pegs and not dowels:
             reserve = desc.peg_length_mm or 1.5 * desc.peg_diameter_mm or min(12.0, min(sides) / 10)
             desc.max_automatic_mm = reserve / 1.5
+        plan = c.cw_plate_desc(plate_mm=sides, reserve_mm=reserve)
         more, count = POINTER(c.cw_cut_desc)(), c_size_t()
-        call(lib.cw_plate_planes, byref(source), (c_double * 3)(*sides), reserve, byref(more), byref(count))
+        call(lib.cw_plate_planes, byref(source), byref(plan), byref(more), byref(count))
         listed += [describe_cut(tuple(more[n].point), tuple(more[n].normal)) for n in range(count.value)]
         lib.cw_planes_free(more)
     array = (c.cw_cut_desc * max(len(listed), 1))(*listed)

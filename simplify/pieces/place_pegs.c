@@ -19,8 +19,13 @@ static const double CELL_SLACK = 1.5;
 /* Pegs keep this fraction of the largest distance to the border, where that leaves room for all. */
 static const double INNER_FRACTION = 0.6;
 
+static const double DEFAULT_CLEARANCE_MM = 0.2;
+
+/* A diameter that was not given is multiplied by this while a section has no pegs. */
+static const double SMALLER = 0.7;
+
 /* Places in a region that turn out to have no room, before the search ends. */
-enum { MAX_FAILURES = 200 };
+enum { MAX_FAILURES = 60 };
 
 /* A region that gets its pegs. */
 typedef struct peg_search {
@@ -369,8 +374,6 @@ static double find_fraction(size_t pegs)
 static void choose_sizes(cw_pieces_desc *d, double reach)
 {
     const double max = d->max_automatic_mm > 0 ? d->max_automatic_mm : 8;
-    if (d->clearance_mm == 0)
-        d->clearance_mm = 0.2;
     if (d->peg_diameter_mm == 0)
         d->peg_diameter_mm = fmin(max, find_fraction(d->pegs) * cwi_widest_peg(d, reach));
     if (d->wall_mm == 0)
@@ -379,11 +382,58 @@ static void choose_sizes(cw_pieces_desc *d, double reach)
         d->peg_length_mm = (d->dowels ? 3 : 1.5) * d->peg_diameter_mm;
 }
 
+/* Returns true if a section that is wide enough for the pegs has none. */
+static bool is_any_empty(const cw_pieces *o)
+{
+    for (size_t n = 0; n < o->section_count; n++)
+        if (!o->sections[n].pegs && o->sections[n].widest_mm >= o->settings.peg_diameter_mm)
+            return true;
+    return false;
+}
+
+/* Places pegs of one size in all sections, in place of those that there are. */
+static cw_status place_size(cwi_cutter *c, cw_error *err)
+{
+    cw_pieces *o = c->out;
+    size_t capacity = 0;
+    cw_status st = CW_OK;
+    cwi_free(o->pegs);
+    o->pegs = NULL;
+    o->peg_count = o->shortened = o->missing = 0;
+    for (size_t n = 0; n < o->section_count; n++)
+        o->sections[n].pegs = 0;
+    for (size_t n = 0; n < o->section_count && st == CW_OK; n++)
+        st = place_in_section(c, n, &capacity, err);
+    return st;
+}
+
+/* Places pegs; those of a diameter that was not given get smaller while a section has none, as pegs of others
+ * may be in their way. asked: the settings without defaults */
+static cw_status place_sizes(cwi_cutter *c, const cw_pieces_desc *asked, double widest,
+                             cw_error *err)
+{
+    enum { TRIES = 4 };
+    cw_pieces *o = c->out;
+    cw_status st = CW_OK;
+    for (int n = 0; n < TRIES && st == CW_OK; n++) {
+        cw_pieces_desc d = *asked;
+        if (n > 0)
+            d.peg_diameter_mm = o->settings.peg_diameter_mm * SMALLER;
+        choose_sizes(&d, widest);
+        o->settings = d;
+        if (d.peg_diameter_mm <= 0)
+            return CW_OK;
+        st = place_size(c, err);
+        if (asked->peg_diameter_mm > 0 || !is_any_empty(o))
+            break;
+    }
+    return st;
+}
+
 cw_status cwi_place_pegs(cwi_cutter *c, cw_error *err)
 {
     cw_pieces *o = c->out;
     double widest = 0;
-    size_t capacity = 0;
     cw_status st = CW_OK;
     double *reach = cwi_alloc_zeroed(o->section_count, sizeof *reach);
     if (!reach)
@@ -393,14 +443,13 @@ cw_status cwi_place_pegs(cwi_cutter *c, cw_error *err)
         widest = cwi_greater(widest, reach[n]);
     }
     cw_pieces_desc asked = o->settings;
-    choose_sizes(&o->settings, widest);
-    asked.clearance_mm = o->settings.clearance_mm;
+    if (asked.clearance_mm == 0)
+        asked.clearance_mm = DEFAULT_CLEARANCE_MM;
     for (size_t n = 0; n < o->section_count; n++)
         o->sections[n].widest_mm = cwi_widest_peg(&asked, reach[n]);
     cwi_free(reach);
-    for (size_t n = 0; n < o->section_count && o->settings.peg_diameter_mm > 0 && st == CW_OK;
-         n++)
-        st = place_in_section(c, n, &capacity, err);
+    if (st == CW_OK)
+        st = place_sizes(c, &asked, widest, err);
     if (st != CW_OK || o->peg_count)
         return st;
     const double room = cwi_widest_peg(&asked, widest);

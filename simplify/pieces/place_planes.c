@@ -19,6 +19,10 @@ static void make_frame(cwi_cut_plane *p)
 
 static cw_status check_plane(const cw_cut_desc *d, size_t n, cw_error *err)
 {
+    if (d->version > 0)
+        return cwi_fail(err, CW_ERR_ARGUMENT,
+                        "plane %zu: its version is %u; this library knows up to 0", n + 1,
+                        (unsigned)d->version);
     for (int a = 0; a < 3; a++)
         if (!isfinite(d->normal[a]) || !isfinite(d->point[a]))
             return cwi_fail(err, CW_ERR_ARGUMENT,

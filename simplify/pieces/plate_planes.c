@@ -18,10 +18,12 @@ static size_t count_parts(double length, double plate, double reserve)
     return parts <= CW_MAX_CUT_PLANES + 1 ? (size_t)fmax(parts, 2) : 0;
 }
 
-cw_status cw_plate_planes(const cw_mesh *mesh, const double plate_mm[3], double reserve_mm,
-                          cw_cut_desc **planes, size_t *count, cw_error *err)
+cw_status cw_plate_planes(const cw_mesh *mesh, const cw_plate_desc *desc, cw_cut_desc **planes,
+                          size_t *count, cw_error *err)
 {
-    CWI_REQUIRE(err, mesh, plate_mm, planes, count);
+    CWI_REQUIRE(err, mesh, desc, planes, count);
+    CWI_REQUIRE_VERSION(err, desc, 0);
+    const double *plate_mm = desc->plate_mm, reserve_mm = desc->reserve_mm;
     double low[3], high[3];
     size_t parts[3], total = 0;
     *planes = NULL;

@@ -256,17 +256,17 @@ static void pieces_fit_and_lie_on_plates(void **state)
 {
     (void)state;
     cw_mesh box = make_box(500, 180, 300);
-    const double plate[3] = {220, 200, 180};
+    const cw_plate_desc plate = {.plate_mm = {220, 200, 180}, .reserve_mm = 12};
     cw_cut_desc *planes = NULL;
     cw_error err = {0};
     size_t count = 0, plates = 0;
-    assert_ok(cw_plate_planes(&box, plate, 12, &planes, &count, &err), err);
+    assert_ok(cw_plate_planes(&box, &plate, &planes, &count, &err), err);
     assert_int_equal(count, 3); /* three parts along x, two along z */
     const cw_pieces_desc desc = {.pegs = 2, .peg_diameter_mm = 8, .peg_length_mm = 12};
     cw_pieces p = check_cut(&box, planes, count, &desc);
     assert_int_equal(p.count, 6);
     cw_lay_desc lay = {0};
-    memcpy(lay.plate_mm, plate, sizeof plate);
+    memcpy(lay.plate_mm, plate.plate_mm, sizeof lay.plate_mm);
     assert_ok(cw_pieces_lay(&p, &lay, &plates, &err), err);
     assert_in_range(plates, 2, 6);
     for (size_t n = 0; n < p.count; n++) {
