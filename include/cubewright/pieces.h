@@ -158,14 +158,15 @@ typedef struct cw_lay_desc {
 } cw_lay_desc;
 
 /* Lays pieces on plates: each is turned so that its largest section without pegs lies on z = 0, or else its
- * largest flat side, as far as it then fits; and put beside the others, tall ones first. Plates stand in a row
- * along x, a gap apart; the first begins at x = y = 0.
+ * largest flat side, as far as it then fits; and put beside the others, deep ones first. Plates stand in a row
+ * along x, a gap apart; the first begins at x = y = 0. Places are rounded to floats, and pieces are sound after that.
  *
  * pieces   in place: meshes, placed, plate and foot_mm2
  * desc     borrowed; NULL means all defaults
  * plates   set to their number; may be NULL
  * Returns  CW_ERR_ARGUMENT  a length is negative or not finite, or some sides of a plate are 0
- *          CW_ERR_CHECK     a piece is larger than the plate: the message names it
+ *          CW_ERR_CHECK     a piece is larger than the plate: the message names it; or as
+ *                           cw_mesh_boolean()
  *          CW_ERR_NO_MEMORY */
 CW_NODISCARD CW_API cw_status cw_pieces_lay(cw_pieces *pieces, const cw_lay_desc *desc,
                                             size_t *plates, cw_error *err);
@@ -191,7 +192,7 @@ typedef struct cw_assembled {
  * threads  0: one per processor
  * progress default: none; may be NULL
  * out      zeroed before; filled on success
- * Returns  as cw_distance_to_mesh()
+ * Returns  as cw_mesh_boolean() and cw_distance_to_mesh()
  * Cost     in proportion to the triangles, and to the lines that they meet */
 CW_NODISCARD CW_API cw_status cw_pieces_assemble(const cw_pieces *pieces, const cw_mesh *whole,
                                                  int threads, const cw_progress *progress,

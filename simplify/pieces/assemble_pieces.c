@@ -5,6 +5,7 @@
 #include "core/texture/gather_meshes.h"
 #include "simplify/pieces/measure_lines.h"
 
+#include <cubewright/boolean.h>
 #include <cubewright/distance.h>
 
 #include <string.h>
@@ -28,6 +29,16 @@ static cw_status move_back(const cw_piece *p, const double origin[3], cw_mesh *o
             (float)((double)out->positions[n] + (out->origin[n % 3] - origin[n % 3]));
     memcpy(out->origin, origin, sizeof out->origin);
     return st;
+}
+
+/* Unites what overlaps in the whole: faces inside of it are no surface of the pieces. */
+static cw_status unite_whole(const cw_mesh *whole, int threads, cw_mesh *out, cw_error *err)
+{
+    cw_mesh bare = *whole;
+    const cw_mesh *list = &bare;
+    const cw_boolean_desc desc = {.threads = threads};
+    bare.normals = NULL;
+    return cw_mesh_boolean(&list, 1, &desc, out, NULL, err);
 }
 
 /* Measures from the surface of the whole to those of all pieces. */
@@ -64,15 +75,14 @@ cw_status cw_pieces_assemble(const cw_pieces *pieces, const cw_mesh *whole, int 
     *out = (cw_assembled){0};
     if (!meshes)
         return cwi_fail_memory(err);
-    cw_status st = cw_mesh_check(whole, err);
-    meshes[0] = *whole; /* borrowed */
+    cw_status st = unite_whole(whole, threads, &meshes[0], err);
     for (size_t n = 1; n < count && st == CW_OK; n++)
         st = move_back(&pieces->pieces[n - 1], whole->origin, &meshes[n], err);
     for (int axis = 0; axis < 3 && st == CW_OK; axis++)
         st = cwi_measure_lines(meshes, count, axis, out, err);
     if (st == CW_OK && count > 1)
         st = measure_distance(meshes, count, &measure, out, err);
-    for (size_t n = 1; n < count; n++)
+    for (size_t n = 0; n < count; n++)
         cw_mesh_free(&meshes[n]);
     cwi_free(meshes);
     return st;

@@ -6,6 +6,8 @@
 #include "core/geometry/vec3.h"
 #include "simplify/pieces/flat_sides.h"
 
+#include <cubewright/boolean.h>
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -166,9 +168,28 @@ static void choose_plate(const laid_piece *list, size_t count, double gap, doubl
     plate[1] = INFINITY;
 }
 
+/* Rounds places in the world to floats, as files hold them, and makes the piece sound again: triangles of sections
+ * may be as thin as what is rounded. */
+static cw_status round_piece(cw_mesh *mesh, int threads, cw_error *err)
+{
+    cw_mesh out = {0};
+    const cw_mesh *list = mesh;
+    const cw_boolean_desc desc = {.threads = threads};
+    for (size_t n = 0; n < 3 * mesh->vertex_count; n++)
+        mesh->positions[n] = (float)((double)mesh->positions[n] + mesh->origin[n % 3]);
+    memset(mesh->origin, 0, sizeof mesh->origin);
+    const cw_status st = cw_mesh_boolean(&list, 1, &desc, &out, NULL, err);
+    if (st != CW_OK)
+        return st;
+    cw_mesh_attribute_remove(&out, "input");
+    cw_mesh_free(mesh);
+    *mesh = out;
+    return CW_OK;
+}
+
 /* Moves a piece to its place, and keeps the map. */
 static cw_status move_piece(cw_piece *piece, const laid_piece *p, double plate_step,
-                            cw_error *err)
+                            int threads, cw_error *err)
 {
     double map[12], placed[12];
     const double to[3] = {p->at[0] + plate_step * (double)(p->plate - 1), p->at[1], 0};
@@ -181,7 +202,9 @@ static cw_status move_piece(cw_piece *piece, const laid_piece *p, double plate_s
             placed[4 * r + k] =
                 map[4 * r] * piece->placed[k] + map[4 * r + 1] * piece->placed[4 + k] +
                 map[4 * r + 2] * piece->placed[8 + k] + (k == 3 ? map[4 * r + 3] : 0);
-    const cw_status st = cw_mesh_transform(&piece->mesh, map, err);
+    cw_status st = cw_mesh_transform(&piece->mesh, map, err);
+    if (st == CW_OK)
+        st = round_piece(&piece->mesh, threads, err);
     if (st != CW_OK)
         return st;
     memcpy(piece->placed, placed, sizeof placed);
@@ -242,7 +265,8 @@ static cw_status lay_list(cw_pieces *pieces, const cw_lay_desc *d, laid_piece *l
     qsort(list, pieces->count, sizeof *list, compare_depths);
     *plates = fill_plates(list, pieces->count, plate, gap, rows);
     for (size_t n = 0; n < pieces->count && st == CW_OK; n++)
-        st = move_piece(&pieces->pieces[list[n].number], &list[n], plate[0] + gap, err);
+        st = move_piece(&pieces->pieces[list[n].number], &list[n], plate[0] + gap,
+                        pieces->settings.threads, err);
     return st;
 }
 

@@ -21,8 +21,9 @@ static const double INNER_FRACTION = 0.6;
 
 static const double DEFAULT_CLEARANCE_MM = 0.2;
 
-/* A diameter that was not given is multiplied by this while a section has no pegs. */
-static const double SMALLER = 0.7;
+/* A diameter that was not given: of the widest that has room, at first and from try to try. Sections that are
+ * nearly as wide as the widest count in this. */
+static const double FIRST_FRACTION = 0.8, SMALLER = 0.7, WIDE = 0.9;
 
 /* Places in a region that turn out to have no room, before the search ends. */
 enum { MAX_FAILURES = 60 };
@@ -361,33 +362,31 @@ static cw_status find_widest(cwi_cutter *c, size_t n, double *reach, cw_error *e
     return st;
 }
 
-/* Returns the diameter of pegs by default, of the widest that has room alone: as many circles fit into a circle of
- * that size. */
-static double find_fraction(size_t pegs)
-{
-    static const double fractions[] = {0.8, 0.5, 0.46, 0.41, 0.37, 0.33};
-    const size_t count = sizeof fractions / sizeof *fractions;
-    return pegs <= count ? fractions[pegs - 1] : 0.8 / sqrt((double)pegs);
-}
-
 /* Fills in the sizes that were not given. reach: the largest of all sections */
 static void choose_sizes(cw_pieces_desc *d, double reach)
 {
     const double max = d->max_automatic_mm > 0 ? d->max_automatic_mm : 8;
     if (d->peg_diameter_mm == 0)
-        d->peg_diameter_mm = fmin(max, find_fraction(d->pegs) * cwi_widest_peg(d, reach));
+        d->peg_diameter_mm = fmin(max, FIRST_FRACTION * cwi_widest_peg(d, reach));
     if (d->wall_mm == 0)
         d->wall_mm = CWI_PEG_WALL * d->peg_diameter_mm;
     if (d->peg_length_mm == 0)
         d->peg_length_mm = (d->dowels ? 3 : 1.5) * d->peg_diameter_mm;
 }
 
-/* Returns true if a section that is wide enough for the pegs has none. */
-static bool is_any_empty(const cw_pieces *o)
+/* Returns true if smaller pegs are worth a try: a section that is wide enough has none, or one of the widest has
+ * fewer than requested. */
+static bool are_pegs_crowded(const cw_pieces *o)
 {
+    double widest = 0;
     for (size_t n = 0; n < o->section_count; n++)
-        if (!o->sections[n].pegs && o->sections[n].widest_mm >= o->settings.peg_diameter_mm)
+        widest = cwi_greater(widest, o->sections[n].widest_mm);
+    for (size_t n = 0; n < o->section_count; n++) {
+        const cw_piece_section *s = &o->sections[n];
+        if ((!s->pegs && s->widest_mm >= o->settings.peg_diameter_mm) ||
+            (s->pegs < o->settings.pegs && s->widest_mm >= WIDE * widest))
             return true;
+    }
     return false;
 }
 
@@ -407,8 +406,7 @@ static cw_status place_size(cwi_cutter *c, cw_error *err)
     return st;
 }
 
-/* Places pegs; those of a diameter that was not given get smaller while a section has none, as pegs of others
- * may be in their way. asked: the settings without defaults */
+/* Places pegs; those of a diameter that was not given get smaller while they are in each other's way. asked: the settings without defaults */
 static cw_status place_sizes(cwi_cutter *c, const cw_pieces_desc *asked, double widest,
                              cw_error *err)
 {
@@ -424,7 +422,7 @@ static cw_status place_sizes(cwi_cutter *c, const cw_pieces_desc *asked, double 
         if (d.peg_diameter_mm <= 0)
             return CW_OK;
         st = place_size(c, err);
-        if (asked->peg_diameter_mm > 0 || !is_any_empty(o))
+        if (asked->peg_diameter_mm > 0 || !are_pegs_crowded(o))
             break;
     }
     return st;
