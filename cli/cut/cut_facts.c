@@ -4,6 +4,7 @@
 #include "cli/framework/console.h"
 #include "cli/framework/quantity.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -155,13 +156,18 @@ static void tell_missing(cli_mesh_run *r, const cw_pieces *p)
                 cli_count(more));
 }
 
+/* Says which pieces lie on little: less than a fraction of a side of a cube of their volume. */
 static void tell_lying(const cli_mesh_run *r, const cw_pieces *p)
 {
-    for (size_t n = 0; n < p->count; n++)
-        if (p->pieces[n].foot_mm2 <= 0)
-            cli_say("%s: %s has no flat side to lie on without pegs, and stands as it was%s",
-                    r->mesh.path, p->pieces[n].name,
-                    p->pieces[n].pegs ? "; --peg-kind dowel leaves its sections flat" : "");
+    static const double LITTLE = 0.05;
+    for (size_t n = 0; n < p->count; n++) {
+        const cw_piece *piece = &p->pieces[n];
+        const double side = cbrt(piece->volume_mm3);
+        if (piece->foot_mm2 < LITTLE * side * side)
+            cli_say("%s: %s lies on %.2g mm2 alone: it has no large flat side without pegs%s",
+                    r->mesh.path, piece->name, piece->foot_mm2,
+                    piece->pegs ? "; --peg-kind dowel leaves its sections flat" : "");
+    }
 }
 
 cw_status cli_report_cut(cli_mesh_run *r, cw_error *err)
