@@ -41,7 +41,10 @@ const cli_synonym cli_synonyms[] = {
      "smooth|--denoise|--smooth-labels|--snap|--placement|--min-volume|--drop-components|--noise",
      "'smooth' and 'extract --smooth' smooth meshes, 'extract --denoise' the values of volumes, and "
      "'extract --labels' the surfaces of labels. --min-volume and --drop-components remove small components."},
-    {"slice off|plane|base|halve|section", "cut", "--cut-plane", NULL},
+    {"slice off|plane|base|halve|section", "cut", "cut|--plane|--cut-plane", NULL},
+    {"peg|dowel|piece|connector|printer bed|build plate|too large", "cut",
+     "cut|--plate|--pegs|--lay",
+     "'cut' cuts a solid to pieces that fit a plate, with pegs or dowels between them."},
     {"cavit|enclosed|hollow inside", "void", "--fill-voids|--min-volume", NULL},
     {"remesh|retriang|sliver|needle|fem|finite element|quality triangle", "remesh",
      "remesh|--fem|--edge|--adaptive|--snap", NULL},

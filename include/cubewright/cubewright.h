@@ -24,6 +24,7 @@
 #include <cubewright/mesh.h>
 #include <cubewright/overlay.h>
 #include <cubewright/picture.h>
+#include <cubewright/pieces.h>
 #include <cubewright/pipeline.h>
 #include <cubewright/print.h>
 #include <cubewright/quality.h>

@@ -26,6 +26,8 @@ from ._library import lib as _lib
 from ._memory import memory_limit, memory_used
 from ._mesh import Mesh
 from ._place import crease_normals, split, transform
+from ._pieces import Piece, Pieces, cut_pieces
+from ._place import split, transform
 from ._progress import Progress
 from ._read import Part, read_mesh, read_parts, read_volume
 from ._remesh import Remeshed, remesh
@@ -55,6 +57,8 @@ __all__ = [
     "Mesh",
     "Part",
     "Patch",
+    "Piece",
+    "Pieces",
     "Progress",
     "Remeshed",
     "Repaired",
@@ -78,6 +82,7 @@ __all__ = [
     "crease_normals",
     "color_by",
     "cut",
+    "cut_pieces",
     "extract",
     "extract_labels",
     "extract_levels",

@@ -55,10 +55,12 @@ CW_FACE_COLORS = 'face_colors'
 CW_FEM_MAX_ASPECT = 10.0
 CW_FEM_MIN_ANGLE_DEG = 10.0
 CW_HANDLE_FRACTION = 0.03
+CW_MAX_CUT_PLANES = 256
 CW_NEEDLE_RATIO = 20.0
 CW_OCCLUSION_DIVISOR = 4
 CW_PRINT_MAX_MM = 400.0
 CW_PRINT_MIN_MM = 5.0
+CW_SECTION_ATTRIBUTE = 'section'
 CW_SIMPLIFIER_SLAB = 524288
 CW_TEXTURE_COORDINATES = 'texture_coordinates'
 CW_VERSION = '0.2.0'
@@ -3202,6 +3204,178 @@ cw_world_mark._fields_ = [
 ]
 
 
+class cw_pieces_desc(Structure):
+    version: int
+    pegs: int
+    dowels: bool
+    peg_diameter_mm: float
+    peg_length_mm: float
+    clearance_mm: float
+    wall_mm: float
+    max_automatic_mm: float
+    threads: int
+    progress: Any
+
+
+cw_pieces_desc._fields_ = [
+    ("version", c_uint32),
+    ("pegs", c_size_t),
+    ("dowels", c_bool),
+    ("peg_diameter_mm", c_double),
+    ("peg_length_mm", c_double),
+    ("clearance_mm", c_double),
+    ("wall_mm", c_double),
+    ("max_automatic_mm", c_double),
+    ("threads", c_int),
+    ("progress", cw_progress),
+]
+
+
+class cw_piece(Structure):
+    mesh: Any
+    name: Any
+    is_dowel: bool
+    volume_mm3: float
+    pegs: int
+    holes: int
+    placed: Any
+    plate: int
+    foot_mm2: float
+
+
+cw_piece._fields_ = [
+    ("mesh", cw_mesh),
+    ("name", c_char * 32),
+    ("is_dowel", c_bool),
+    ("volume_mm3", c_double),
+    ("pegs", c_size_t),
+    ("holes", c_size_t),
+    ("placed", c_double * 12),
+    ("plate", c_size_t),
+    ("foot_mm2", c_double),
+]
+
+
+class cw_piece_section(Structure):
+    plane: int
+    below: int
+    above: int
+    area_mm2: float
+    regions: int
+    pegs: int
+    widest_mm: float
+
+
+cw_piece_section._fields_ = [
+    ("plane", c_size_t),
+    ("below", c_size_t),
+    ("above", c_size_t),
+    ("area_mm2", c_double),
+    ("regions", c_size_t),
+    ("pegs", c_size_t),
+    ("widest_mm", c_double),
+]
+
+
+class cw_peg(Structure):
+    section: int
+    center: Any
+    direction: Any
+    diameter_mm: float
+    length_mm: float
+
+
+cw_peg._fields_ = [
+    ("section", c_size_t),
+    ("center", c_double * 3),
+    ("direction", c_double * 3),
+    ("diameter_mm", c_double),
+    ("length_mm", c_double),
+]
+
+
+class cw_pieces(Structure):
+    version: int
+    count: int
+    pieces: Any
+    section_count: int
+    sections: Any
+    peg_count: int
+    pegs: Any
+    settings: Any
+    whole_mm3: float
+    pieces_mm3: float
+    gaps_mm3: float
+    shortened: int
+    missing: int
+
+
+cw_pieces._fields_ = [
+    ("version", c_uint32),
+    ("count", c_size_t),
+    ("pieces", POINTER(cw_piece)),
+    ("section_count", c_size_t),
+    ("sections", POINTER(cw_piece_section)),
+    ("peg_count", c_size_t),
+    ("pegs", POINTER(cw_peg)),
+    ("settings", cw_pieces_desc),
+    ("whole_mm3", c_double),
+    ("pieces_mm3", c_double),
+    ("gaps_mm3", c_double),
+    ("shortened", c_size_t),
+    ("missing", c_size_t),
+]
+
+
+class cw_plate_desc(Structure):
+    version: int
+    plate_mm: Any
+    reserve_mm: float
+
+
+cw_plate_desc._fields_ = [
+    ("version", c_uint32),
+    ("plate_mm", c_double * 3),
+    ("reserve_mm", c_double),
+]
+
+
+class cw_lay_desc(Structure):
+    version: int
+    plate_mm: Any
+    gap_mm: float
+
+
+cw_lay_desc._fields_ = [
+    ("version", c_uint32),
+    ("plate_mm", c_double * 3),
+    ("gap_mm", c_double),
+]
+
+
+class cw_assembled(Structure):
+    version: int
+    whole_mm3: float
+    assembled_mm3: float
+    overlap_mm3: float
+    missing_mm3: float
+    beyond_mm3: float
+    farthest_mm: float
+    lines: int
+
+
+cw_assembled._fields_ = [
+    ("version", c_uint32),
+    ("whole_mm3", c_double),
+    ("assembled_mm3", c_double),
+    ("overlap_mm3", c_double),
+    ("missing_mm3", c_double),
+    ("beyond_mm3", c_double),
+    ("farthest_mm", c_double),
+    ("lines", c_size_t),
+]
+
+
 class cw_simplify_view(Structure):
     camera: Any
     width: int
@@ -4007,6 +4181,12 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "cw_world_marks_draw": (c_int, [POINTER(cw_world_mark), c_size_t, c_double, POINTER(cw_scene), POINTER(cw_image), POINTER(cw_error)]),
     "cw_image_place": (None, [POINTER(cw_image), POINTER(cw_image), c_ssize_t, c_ssize_t]),
     "cw_image_tile": (c_int, [POINTER(cw_image), c_size_t, c_size_t, c_size_t, POINTER(c_uint8), POINTER(cw_image), POINTER(cw_error)]),
+    "cw_pieces_cut": (c_int, [POINTER(cw_mesh), POINTER(cw_cut_desc), c_size_t, POINTER(cw_pieces_desc), POINTER(cw_pieces), POINTER(cw_error)]),
+    "cw_pieces_free": (None, [POINTER(cw_pieces)]),
+    "cw_plate_planes": (c_int, [POINTER(cw_mesh), POINTER(cw_plate_desc), POINTER(POINTER(cw_cut_desc)), POINTER(c_size_t), POINTER(cw_error)]),
+    "cw_planes_free": (None, [POINTER(cw_cut_desc)]),
+    "cw_pieces_lay": (c_int, [POINTER(cw_pieces), POINTER(cw_lay_desc), POINTER(c_size_t), POINTER(cw_error)]),
+    "cw_pieces_assemble": (c_int, [POINTER(cw_pieces), POINTER(cw_mesh), c_int, POINTER(cw_progress), POINTER(cw_assembled), POINTER(cw_error)]),
     "cw_simplify_view_draw": (c_int, [POINTER(cw_simplify_view), POINTER(cw_mesh), POINTER(cw_error)]),
     "cw_simplify_view_free": (None, [POINTER(cw_simplify_view)]),
     "cw_simplify_view_error": (c_int, [POINTER(cw_simplify_view), c_double, POINTER(c_double), POINTER(c_double), POINTER(cw_error)]),

@@ -20,18 +20,18 @@ static double distance_sq(const cw_mesh *const *meshes, size_t n, const cwi_grid
     return cwi_dot(by, by);
 }
 
-/* Finds flags of each input by its first triangle on the grid: one that was turned has exchanged corners. */
+/* Finds flags of each input by its first triangle on the grid: one that was turned has exchanged corners. Parts of
+ * triangles that were split while snapping may follow in any order. */
 static void find_flags(const cw_mesh *const *meshes, const cwi_grid_solids *s, uint8_t *inputs)
 {
-    size_t first = 0;
-    uint32_t input = UINT32_MAX;
     memset(inputs, CW_BOOLEAN_EMPTY, s->input_count);
     for (size_t t = 0; t < s->soup.triangle_count; t++) {
-        if (s->inputs[t] == input)
+        const uint32_t input = s->inputs[t];
+        size_t first = 0;
+        if (inputs[input] != CW_BOOLEAN_EMPTY)
             continue;
-        for (uint32_t n = input == UINT32_MAX ? 0 : input; n < s->inputs[t]; n++)
+        for (uint32_t n = 0; n < input; n++)
             first += meshes[n]->triangle_count;
-        input = s->inputs[t];
         const uint32_t *v = s->soup.triangles[t],
                        own = meshes[input]->triangles[3 * (s->sources[t] - first) + 1];
         inputs[input] =

@@ -368,6 +368,33 @@ class Coordinates(Case):
         with self.fails(cw.Status.CANCELLED):
             cw.remesh(ball, size / 15, progress=lambda *_: False)
 
+    def test_pieces_go_together(self):
+        ball = cw.extract(make_ball(), 0)
+        low, high = ball.vertices.min(axis=0) + ball.origin, ball.vertices.max(axis=0) + ball.origin
+        size = float((high - low).max())
+        middle = tuple((low + high) / 2)
+        planes = [(middle, (0, 0, 1)), (middle, (1, 0.5, 0))]
+        cut = cw.cut_pieces(ball, planes, pegs=1, clearance=size / 200, threads=2)
+        self.assertIsInstance(cut, cw.Pieces)
+        self.assertEqual([piece.name for piece in cut.pieces], ["piece-1", "piece-2", "piece-3", "piece-4"])
+        self.assertEqual((cut.pegs, cut.missing, cut.plates), (4, 0, 0))
+        self.assertAlmostEqual(sum(p.volume for p in cut.pieces) / (cut.volume - cut.gaps), 1, places=9)
+        self.assertLess(cut.farthest, 1e-5 * size)
+        self.assertLess(cut.overlap, 1e-5 * cut.volume)
+        for piece in cut.pieces:
+            self.assertTrue(cw.check(piece.mesh, profile="print").holds)
+            self.assertIn("section", piece.mesh.attributes)
+        laid = cw.cut_pieces(ball, plate=(0.7 * size,) * 3, pegs=1, dowels=True, clearance=size / 200, lay=True)
+        self.assertEqual(len(laid.pieces), 8 + laid.pegs)
+        self.assertTrue(all(p.plate >= 1 and abs(p.mesh.vertices[:, 2].min() + p.mesh.origin[2]) < 1e-4 * size for p in laid.pieces))
+        with self.fails(cw.Status.ARGUMENT):
+            cw.cut_pieces(ball, [((0, 0, 9 * size), (0, 0, 1))])
+        with self.fails(cw.Status.CHECK):
+            cw.cut_pieces(ball, planes, pegs=1, peg_diameter=size)
+        with self.fails(cw.Status.CANCELLED):
+            cw.cut_pieces(ball, planes, progress=lambda *_: False)
+        self.assertRaises(TypeError, lambda: cw.cut_pieces(ball, planes, pegs=1.5))
+
     def test_boolean_adds_up(self):
         ball = cw.extract(make_ball(), 0)
         size = float(np.ptp(ball.vertices, axis=0).max())

@@ -32,7 +32,7 @@ cubewright help --search 'threshold xyzzy' || echo "exit $?"
 cubewright help --search ' ' || echo "exit $?"
 # unknown options and commands ask the same index: what they name is in the results
 for words in 'extract --threshold' 'extract --scale' 'extract --rotate' 'extract --mirror' 'extract --resume' \
-    'render --decimate' 'extract --isovalue' 'extract --lables' 'extract --xyzzy' subtract decimate segment resume cut; do
+    'render --decimate' 'extract --isovalue' 'extract --lables' 'extract --xyzzy' subtract decimate segment resume halve; do
     cubewright $words 2>error && echo "$words: accepted"
     cat error >&2
     word=$(sed -n "s/.*help --search \([a-z]*\)' finds.*/\1/p" error)

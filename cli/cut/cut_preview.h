@@ -1,0 +1,15 @@
+/* A picture of pieces before they are written. */
+#ifndef CLI_CUT_CUT_PREVIEW_H
+#define CLI_CUT_CUT_PREVIEW_H
+
+#include <cubewright/pieces.h>
+
+/* Draws pieces pulled apart, each in its colour, with pegs and frames in the planes, and writes a PNG.
+ * pieces  at their places in the whole
+ * planes  count of them
+ * Returns CW_ERR_NO_MEMORY; or as cw_render_mesh() and cw_image_write() */
+CW_NODISCARD cw_status cli_write_cut_preview(const char *path, const cw_pieces *pieces,
+                                             const cw_cut_desc *planes, size_t count,
+                                             int threads, cw_error *err);
+
+#endif
