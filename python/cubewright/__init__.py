@@ -25,9 +25,8 @@ from ._handles import Closed, close_handles
 from ._library import lib as _lib
 from ._memory import memory_limit, memory_used
 from ._mesh import Mesh
-from ._place import crease_normals, split, transform
 from ._pieces import Piece, Pieces, cut_pieces
-from ._place import split, transform
+from ._place import crease_normals, split, transform
 from ._progress import Progress
 from ._read import Part, read_mesh, read_parts, read_volume
 from ._remesh import Remeshed, remesh
@@ -79,8 +78,8 @@ __all__ = [
     "boolean",
     "check",
     "close_handles",
-    "crease_normals",
     "color_by",
+    "crease_normals",
     "cut",
     "cut_pieces",
     "extract",
