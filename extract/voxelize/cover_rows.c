@@ -4,6 +4,7 @@
 
 #include "core/base/memory.h"
 #include "core/base/parallel.h"
+#include "core/geometry/vec3.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -69,11 +70,11 @@ static bool find_cells(const polygon *g, int axis, int64_t first, int64_t last, 
 {
     double min = g->p[0][axis], max = min;
     for (int n = 1; n < g->count; n++) {
-        min = fmin(min, g->p[n][axis]);
-        max = fmax(max, g->p[n][axis]);
+        min = cwi_lesser(min, g->p[n][axis]);
+        max = cwi_greater(max, g->p[n][axis]);
     }
-    min = fmax(floor(min + 0.5), (double)first);
-    max = fmin(floor(max + 0.5), (double)last);
+    min = cwi_greater(floor(min + 0.5), (double)first);
+    max = cwi_lesser(floor(max + 0.5), (double)last);
     if (g->count < 3 || min > max)
         return false;
     *low = (int64_t)min;
@@ -97,21 +98,21 @@ static void add_piece(rows *r, const polygon *g, uint32_t row, size_t mesh, int6
                  reach = (double)i + 0.5 - moment / area;
     piece *e = cwi_row_events_add(&r->events, sizeof *e);
     if (e)
-        *e =
-            (piece){row, (uint32_t)mesh, i, cover, i < 0 ? 0 : cover * fmin(fmax(reach, 0), 1)};
+        *e = (piece){row, (uint32_t)mesh, i, cover,
+                     i < 0 ? 0 : cover * cwi_lesser(cwi_greater(reach, 0), 1)};
 }
 
-/* Cuts a polygon into the cells along an axis, from cell `first` to `last`. The part of cell `cell` is
- * returned, and the rest stays in `rest`. */
-static void cut_cell(polygon *rest, int axis, int64_t cell, bool is_last, polygon *part)
+/* Cuts the part in a cell off a polygon; the rest stays in it. Returns that part, which is the polygon itself
+ * in the last cell. */
+static polygon *cut_cell(polygon *rest, int axis, int64_t cell, bool is_last, polygon *part)
 {
     polygon above;
-    if (is_last) {
-        *part = *rest;
-        return;
-    }
+    if (is_last)
+        return rest;
     split_polygon(rest, axis, (double)cell + 0.5, part, &above);
-    *rest = above;
+    rest->count = above.count;
+    memcpy(rest->p, above.p, (size_t)above.count * sizeof *above.p);
+    return part;
 }
 
 /* Leaves out what is below the first cell, and above the last. */
@@ -130,9 +131,9 @@ static void cover_row(rows *r, polygon *rest, uint32_t row, size_t mesh)
     if (!find_cells(rest, 0, INT32_MIN, INT32_MAX, &low, &high) || low >= end)
         return;
     low = low < 0 ? -1 : low;
+    high = high < 0 ? -1 : high;
     for (int64_t i = low; i <= high && i < end; i++) {
-        cut_cell(rest, 0, i, i == high, &part);
-        add_piece(r, &part, row, mesh, i);
+        add_piece(r, cut_cell(rest, 0, i, i == high, &part), row, mesh, i);
     }
 }
 
@@ -146,9 +147,8 @@ static void cover_layer(rows *r, polygon *rest, size_t layer, size_t mesh)
     if (low == 0 || high == last)
         clip_cells(rest, 1, low, high);
     for (int64_t j = low; j <= high; j++) {
-        cut_cell(rest, 1, j, j == high, &part);
-        cover_row(r, &part, (uint32_t)((layer - r->low) * (size_t)(last + 1) + (size_t)j),
-                  mesh);
+        polygon *g = cut_cell(rest, 1, j, j == high, &part);
+        cover_row(r, g, (uint32_t)((layer - r->low) * (size_t)(last + 1) + (size_t)j), mesh);
     }
 }
 
@@ -165,8 +165,7 @@ static void cover_triangle(rows *r, size_t triangle, size_t mesh)
     if (low == (int64_t)r->low || high == (int64_t)r->high - 1)
         clip_cells(&rest, 2, low, high);
     for (int64_t k = low; k <= high; k++) {
-        cut_cell(&rest, 2, k, k == high, &part);
-        cover_layer(r, &part, (size_t)k, mesh);
+        cover_layer(r, cut_cell(&rest, 2, k, k == high, &part), (size_t)k, mesh);
     }
 }
 

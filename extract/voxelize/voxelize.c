@@ -162,15 +162,18 @@ static cw_status choose_lattice(cwi_voxelize *v, cw_error *err)
 {
     enum { COORDINATE_BITS = 29, FINEST_BITS = 16 };
     double reach = 1;
+    bool is_finite = true;
     int bits;
     for (int a = 0; a < 3; a++)
         reach = fmax(reach, (double)v->volume->dim[a]);
     for (size_t n = 0; n < v->first_vertex[v->count]; n++)
-        for (int a = 0; a < 3; a++)
-            reach = fmax(reach, fabs(v->points[n][a]));
+        for (int a = 0; a < 3; a++) {
+            reach = cwi_greater(reach, fabs(v->points[n][a]));
+            is_finite = is_finite && isfinite(v->points[n][a]);
+        }
     frexp(reach, &bits);
     bits = COORDINATE_BITS - bits;
-    if (!isfinite(reach) || bits < 0)
+    if (!is_finite || bits < 0)
         return cwi_fail(
             err, CW_ERR_LIMIT,
             "the meshes reach %.3g voxels far, and 2^%d are the maximum: check the unit of mesh "
@@ -190,8 +193,8 @@ static cw_status check_place(const cwi_voxelize *v, cw_error *err)
         bool meets = true;
         for (size_t p = v->first_vertex[n]; p < v->first_vertex[n + 1]; p++)
             for (int a = 0; a < 3; a++) {
-                low[a] = fmin(low[a], v->points[p][a]);
-                high[a] = fmax(high[a], v->points[p][a]);
+                low[a] = cwi_lesser(low[a], v->points[p][a]);
+                high[a] = cwi_greater(high[a], v->points[p][a]);
             }
         for (int a = 0; a < 3; a++)
             meets = meets && low[a] < (double)dim[a] - 0.5 && high[a] > -0.5;
@@ -218,16 +221,16 @@ static bool find_blocks(const cwi_voxelize *v, size_t triangle, size_t mesh, siz
 {
     const double *c[3], last = (double)v->volume->dim[2] - 1;
     cwi_voxelize_corners(v, triangle, mesh, c);
-    const double z0 = floor(fmin(fmin(c[0][2], c[1][2]), c[2][2])),
-                 z1 = ceil(fmax(fmax(c[0][2], c[1][2]), c[2][2])),
-                 y0 = floor(fmin(fmin(c[0][1], c[1][1]), c[2][1])),
-                 y1 = ceil(fmax(fmax(c[0][1], c[1][1]), c[2][1])),
-                 x0 = floor(fmin(fmin(c[0][0], c[1][0]), c[2][0]));
+    const double z0 = floor(cwi_lesser(cwi_lesser(c[0][2], c[1][2]), c[2][2])),
+                 z1 = ceil(cwi_greater(cwi_greater(c[0][2], c[1][2]), c[2][2])),
+                 y0 = floor(cwi_lesser(cwi_lesser(c[0][1], c[1][1]), c[2][1])),
+                 y1 = ceil(cwi_greater(cwi_greater(c[0][1], c[1][1]), c[2][1])),
+                 x0 = floor(cwi_lesser(cwi_lesser(c[0][0], c[1][0]), c[2][0]));
     if (z0 > last || z1 < 0 || y0 >= (double)v->volume->dim[1] || y1 < 0 ||
         x0 >= (double)v->volume->dim[0])
         return false;
-    *low = (size_t)fmax(z0, 0) / CWI_VOXELIZE_LAYERS;
-    *high = (size_t)fmin(z1, last) / CWI_VOXELIZE_LAYERS;
+    *low = (size_t)cwi_greater(z0, 0) / CWI_VOXELIZE_LAYERS;
+    *high = (size_t)cwi_lesser(z1, last) / CWI_VOXELIZE_LAYERS;
     return true;
 }
 
