@@ -33,6 +33,7 @@ from ._render import render, write_png
 from ._repair import Repaired, repair
 from ._simplify import Smoothed, hollow, offset, simplify, simplify_levels, smooth, weld
 from ._volume import Label, Statistics, Volume
+from ._voxelize import Voxelized, VoxelizedPart, voxelize
 from ._write import Written, write
 
 __version__: str = _lib.cw_version().decode()
@@ -65,6 +66,8 @@ __all__ = [
     "TextureDistance",
     "Verdict",
     "Volume",
+    "Voxelized",
+    "VoxelizedPart",
     "Written",
     "appearance",
     "appearance_view",
@@ -100,6 +103,7 @@ __all__ = [
     "split",
     "texture_distance",
     "transform",
+    "voxelize",
     "weld",
     "write",
     "write_png",

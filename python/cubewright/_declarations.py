@@ -2339,6 +2339,7 @@ class cw_write_desc(Structure):
     provenance: Any
     provenance_count: int
     progress: Any
+    labels: Any
 
 
 cw_write_desc._fields_ = [
@@ -2359,6 +2360,7 @@ cw_write_desc._fields_ = [
     ("provenance", POINTER(cw_provenance)),
     ("provenance_count", c_size_t),
     ("progress", cw_progress),
+    ("labels", POINTER(cw_label_table)),
 ]
 
 
@@ -3722,6 +3724,70 @@ class cw_slice_filter(Structure):
     pass
 
 
+class cw_voxelize_part(Structure):
+    volume_mm3: float
+    filled_mm3: float
+    voxels: int
+    overlapped: int
+    repeated: int
+    negative: int
+    solids: int
+    lost: int
+    thin_places: int
+    thin_mm2: float
+    area_mm2: float
+    outside_mm2: float
+    turned: bool
+    open: bool
+
+
+cw_voxelize_part._fields_ = [
+    ("volume_mm3", c_double),
+    ("filled_mm3", c_double),
+    ("voxels", c_size_t),
+    ("overlapped", c_size_t),
+    ("repeated", c_size_t),
+    ("negative", c_size_t),
+    ("solids", c_size_t),
+    ("lost", c_size_t),
+    ("thin_places", c_size_t),
+    ("thin_mm2", c_double),
+    ("area_mm2", c_double),
+    ("outside_mm2", c_double),
+    ("turned", c_bool),
+    ("open", c_bool),
+]
+
+
+class cw_voxelize_desc(Structure):
+    version: int
+    like: Any
+    spacing_mm: Any
+    low: Any
+    high: Any
+    labels: Any
+    partial: bool
+    max_bytes: int
+    parts: Any
+    threads: int
+    progress: Any
+
+
+cw_voxelize_desc._fields_ = [
+    ("version", c_uint32),
+    ("like", POINTER(cw_volume)),
+    ("spacing_mm", c_double * 3),
+    ("low", c_double * 3),
+    ("high", c_double * 3),
+    ("labels", POINTER(c_uint32)),
+    ("partial", c_bool),
+    ("max_bytes", c_size_t),
+    ("parts", POINTER(cw_voxelize_part)),
+    ("threads", c_int),
+    ("progress", cw_progress),
+]
+
+
 cw_slice = cw_clip
 
 # The result and the arguments of each function.
@@ -4027,6 +4093,7 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "cw_slice_filter_new": (c_int, [POINTER(cw_slice_source), POINTER(cw_slice_filter_desc), POINTER(POINTER(cw_slice_filter)), POINTER(cw_error)]),
     "cw_slice_filter_source": (cw_slice_source, [POINTER(cw_slice_filter)]),
     "cw_slice_filter_free": (None, [POINTER(cw_slice_filter)]),
+    "cw_voxelize": (c_int, [POINTER(POINTER(cw_mesh)), c_size_t, POINTER(cw_voxelize_desc), POINTER(cw_volume), POINTER(cw_error)]),
 }
 
 VARIABLES: dict[str, Any] = {
