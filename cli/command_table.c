@@ -6,6 +6,7 @@
 #include "cli/extract/extract_run.h"
 #include "cli/extract/part_join.h"
 #include "cli/help/help_search.h"
+#include "cli/info/cmd_info.h"
 #include "cli/render/render_run.h"
 #include "cli/report/report_run.h"
 #include "cli/window/panels.h"

@@ -126,9 +126,16 @@ static cw_status fill_voxels(voxelize_run *r, cw_error *err)
     }
     cw_status st = cw_voxelize(r->solids.meshes, r->solids.count, &d, &r->volume, err);
     r->seconds = cli_seconds() - start;
-    if (st == CW_OK)
-        cli_tell_solids(&r->solids, args->partial);
-    return st == CW_OK ? st : cli_fail_solids(&r->solids, st, err);
+    if (st != CW_OK)
+        return cli_fail_solids(&r->solids, st, err);
+    cli_tell_solids(&r->solids, args->partial);
+    for (size_t n = 0; n < r->solids.count; n++)
+        if (r->solids.parts[n].filled_mm3 > 0)
+            return CW_OK;
+    return cwi_fail(
+        err, CW_ERR_EMPTY,
+        "%s: no centre of a voxel is inside; a finer --spacing, or --partial, helps",
+        args->common.inputs[0]);
 }
 
 /* Says which names a format has no place for. */

@@ -28,9 +28,10 @@ typedef struct cw_voxelize_part {
                             between inside and outside: thinner than a voxel, or in a narrow gap */
     double thin_mm2; /* their area */
     double area_mm2; /* of the whole mesh */
-    double outside_mm2; /* area of the surface outside of the grid */
-    bool turned;        /* it faced inward as a whole: it enclosed a negative volume */
-    bool open;          /* the call failed because it is open */
+    double
+        outside_mm2; /* area of the surface outside of the grid; this and thin_mm2 by samples */
+    bool turned;     /* it faced inward as a whole: it enclosed a negative volume */
+    bool open;       /* the call failed because it is open */
 } cw_voxelize_part;
 
 /* Options of a voxelization. Zero fields mean the default named beside them; either `like` or a spacing is
@@ -90,6 +91,31 @@ typedef struct cw_voxelize_desc {
 CW_NODISCARD CW_API cw_status cw_voxelize(const cw_mesh *const *meshes, size_t count,
                                           const cw_voxelize_desc *desc, cw_volume *volume,
                                           cw_error *err);
+
+/* Values of a volume inside of a mesh. */
+typedef struct cw_within {
+    cw_voxelize_part mesh; /* facts on the mesh in the grid, as of partial volumes */
+    double volume_mm3; /* volume inside of the mesh that has values: in the grid, and no NaN or
+                              voxels without a value; 0: none has, and the next four are 0 */
+    double mean, sd; /* of the values, weighted by the fraction of each voxel that is inside */
+    double min,
+        max; /* of voxels at least half inside; if there are none, of all that are partly */
+    size_t voxels; /* partly inside, with a value */
+    size_t halves; /* of them, at least half inside */
+} cw_within;
+
+/* Measures the values of the first component and step of a volume inside of a closed mesh. Voxels count by the
+ * fraction of their cell that is inside. Values between voxels are not interpolated.
+ *
+ * volume   borrowed; an evenly spaced grid
+ * mesh     borrowed; as of cw_voxelize()
+ * threads  0 means all
+ * out      filled on success
+ * Returns  as cw_voxelize(); CW_ERR_EMPTY: the mesh is outside of the volume
+ * Cost     as cw_voxelize() for the voxels in the box of the mesh
+ * Threads  reentrant; the same to the bit for any number of threads */
+CW_NODISCARD CW_API cw_status cw_volume_within(const cw_volume *volume, const cw_mesh *mesh,
+                                               int threads, cw_within *out, cw_error *err);
 
 #ifdef __cplusplus
 }

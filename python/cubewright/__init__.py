@@ -33,7 +33,7 @@ from ._render import render, write_png
 from ._repair import Repaired, repair
 from ._simplify import Smoothed, hollow, offset, simplify, simplify_levels, smooth, weld
 from ._volume import Label, Statistics, Volume
-from ._voxelize import Voxelized, VoxelizedPart, voxelize
+from ._voxelize import Voxelized, VoxelizedPart, Within, measure_within, voxelize
 from ._write import Written, write
 
 __version__: str = _lib.cw_version().decode()
@@ -68,6 +68,7 @@ __all__ = [
     "Volume",
     "Voxelized",
     "VoxelizedPart",
+    "Within",
     "Written",
     "appearance",
     "appearance_view",
@@ -87,6 +88,7 @@ __all__ = [
     "formats",
     "hollow",
     "make",
+    "measure_within",
     "memory_limit",
     "memory_used",
     "offset",

@@ -3788,6 +3788,29 @@ cw_voxelize_desc._fields_ = [
 ]
 
 
+class cw_within(Structure):
+    mesh: Any
+    volume_mm3: float
+    mean: float
+    sd: float
+    min: float
+    max: float
+    voxels: int
+    halves: int
+
+
+cw_within._fields_ = [
+    ("mesh", cw_voxelize_part),
+    ("volume_mm3", c_double),
+    ("mean", c_double),
+    ("sd", c_double),
+    ("min", c_double),
+    ("max", c_double),
+    ("voxels", c_size_t),
+    ("halves", c_size_t),
+]
+
+
 cw_slice = cw_clip
 
 # The result and the arguments of each function.
@@ -4094,6 +4117,7 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "cw_slice_filter_source": (cw_slice_source, [POINTER(cw_slice_filter)]),
     "cw_slice_filter_free": (None, [POINTER(cw_slice_filter)]),
     "cw_voxelize": (c_int, [POINTER(POINTER(cw_mesh)), c_size_t, POINTER(cw_voxelize_desc), POINTER(cw_volume), POINTER(cw_error)]),
+    "cw_volume_within": (c_int, [POINTER(cw_volume), POINTER(cw_mesh), c_int, POINTER(cw_within), POINTER(cw_error)]),
 }
 
 VARIABLES: dict[str, Any] = {

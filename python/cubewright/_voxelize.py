@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from . import _declarations as c
+from ._errors import call
 from ._library import lib
 from ._memory import Owner
 from ._mesh import Mesh, take_mesh
@@ -97,23 +98,59 @@ def voxelize(
     reporter.call(lib.cw_voxelize, pointers, len(sources), byref(desc), byref(out.struct))
     return Voxelized(
         volume=Volume._from_c(out),
-        parts=tuple(
-            VoxelizedPart(
-                label=value,
-                volume=p.volume_mm3,
-                filled=p.filled_mm3,
-                voxels=p.voxels,
-                overlapped=p.overlapped,
-                repeated=p.repeated,
-                negative=p.negative,
-                solids=p.solids,
-                lost=p.lost,
-                thin_places=p.thin_places,
-                thin_area=p.thin_mm2,
-                area=p.area_mm2,
-                outside_area=p.outside_mm2,
-                turned=p.turned,
-            )
-            for value, p in zip(numbers, parts)
-        ),
+        parts=tuple(describe_part(value, p) for value, p in zip(numbers, parts)),
+    )
+
+
+def describe_part(label: int, p: c.cw_voxelize_part) -> VoxelizedPart:
+    return VoxelizedPart(
+        label=label,
+        volume=p.volume_mm3,
+        filled=p.filled_mm3,
+        voxels=p.voxels,
+        overlapped=p.overlapped,
+        repeated=p.repeated,
+        negative=p.negative,
+        solids=p.solids,
+        lost=p.lost,
+        thin_places=p.thin_places,
+        thin_area=p.thin_mm2,
+        area=p.area_mm2,
+        outside_area=p.outside_mm2,
+        turned=p.turned,
+    )
+
+
+@dataclass(frozen=True)
+class Within:
+    """Values of a volume inside of a mesh."""
+
+    volume: float  # mm3 that are inside and have values
+    mean: float  # weighted by the fraction of each voxel that is inside
+    sd: float
+    min: float  # of voxels at least half inside; if there are none, of all that are partly
+    max: float
+    voxels: int  # partly inside
+    half_inside: int  # of them, at least half inside
+    mesh: VoxelizedPart  # facts on the mesh
+
+
+def measure_within(volume: Any, mesh: Mesh, *, component: int = 0, step: int = 0, threads: int = 0) -> Within:
+    """Measures the values of a volume inside of a closed mesh, weighted by partial volumes.
+
+    Raises Error: CHECK (the mesh is open), EMPTY (it is outside), UNSUPPORTED (an uneven grid), NO_MEMORY.
+    """
+    view = take_volume(volume)._select(component, step)
+    source = take_mesh("mesh", mesh)
+    out = c.cw_within()
+    call(lib.cw_volume_within, byref(view), byref(source), take_threads(threads), byref(out))
+    return Within(
+        volume=out.volume_mm3,
+        mean=out.mean,
+        sd=out.sd,
+        min=out.min,
+        max=out.max,
+        voxels=out.voxels,
+        half_inside=out.halves,
+        mesh=describe_part(1, out.mesh),
     )

@@ -350,6 +350,22 @@ class Voxelizing(Case):
                 self.assertEqual([label.name for label in back.labels], ["left", "right"])
                 np.testing.assert_array_equal(back.array, made.volume.array)
 
+    def test_values_inside_of_a_mesh(self):
+        array = np.zeros((20, 20, 20), "f4")
+        array[:, :, 10:] = 5
+        volume = cw.Volume(array, spacing=2)
+        corners = np.array([[x, y, z] for x in (9, 29) for y in (9, 29) for z in (9, 29)], "f4")
+        faces = [[0, 1, 3], [0, 3, 2], [4, 6, 7], [4, 7, 5], [0, 4, 5], [0, 5, 1], [2, 3, 7], [2, 7, 6],
+                 [0, 2, 6], [0, 6, 4], [1, 5, 7], [1, 7, 3]]  # fmt: skip
+        box = cw.Mesh.from_arrays(corners, np.array(faces, "u4"))
+        found = cw.measure_within(volume, box)
+        self.assertAlmostEqual(found.volume, 8000, 1)
+        self.assertAlmostEqual(found.mean, 2.5, 5)
+        self.assertAlmostEqual(found.sd, 2.5, 5)
+        self.assertEqual((found.min, found.max, found.mesh.outside_area), (0, 5, 0))
+        with self.assertRaisesRegex(cw.Error, "outside"):
+            cw.measure_within(cw.Volume(array, origin=(500, 0, 0)), box)
+
     def test_what_makes_no_sense_is_refused(self):
         ball = cw.extract(make_ball(), 0)
         for arguments, words in (({}, "grid is required"), ({"spacing": 1, "like": cw.Volume(make_ball())}, "not both")):
