@@ -88,6 +88,9 @@ const cli_synonym cli_synonyms[] = {
      "cubewright writes no videos. 'render --turntable' writes numbered pictures, 'extract "
      "--animate' an animated glTF file."},
     {"animation|spin", NULL, "--turntable|--orbit|--animate|turntable", NULL},
+    {"overhang|support structure|supports|build orientation|print orientation|lay flat", NULL,
+     "--orient-print|--overhang|--profile",
+     "'convert --orient-print auto' turns a mesh to the pose that prints with the least support."},
     {"rotat|turn", NULL, "--rotate|--up|--input-up|--turntable|--orbit", NULL},
     {"mirror|reflect", NULL, "--mirror|--input-frame|--frame",
      "A surface that comes out mirrored is in another frame than its reader expects: "

@@ -25,6 +25,7 @@ from ._handles import Closed, close_handles
 from ._library import lib as _lib
 from ._memory import memory_limit, memory_used
 from ._mesh import Mesh
+from ._orient import Oriented, Stand, orient_print
 from ._place import split, transform
 from ._progress import Progress
 from ._read import Part, read_mesh, read_parts, read_volume
@@ -54,6 +55,7 @@ __all__ = [
     "LabelSurfaces",
     "LookDifference",
     "Mesh",
+    "Oriented",
     "Part",
     "Patch",
     "Progress",
@@ -61,6 +63,7 @@ __all__ = [
     "Repaired",
     "Settings",
     "Smoothed",
+    "Stand",
     "Statistics",
     "Status",
     "TextureDistance",
@@ -92,6 +95,7 @@ __all__ = [
     "memory_limit",
     "memory_used",
     "offset",
+    "orient_print",
     "read_mesh",
     "read_parts",
     "read_volume",

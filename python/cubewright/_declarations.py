@@ -54,6 +54,7 @@ CW_FACE_COLORS = 'face_colors'
 CW_FEM_MAX_ASPECT = 10.0
 CW_FEM_MIN_ANGLE_DEG = 10.0
 CW_HANDLE_FRACTION = 0.03
+CW_MIN_TIP_DEG = 5.0
 CW_NEEDLE_RATIO = 20.0
 CW_OCCLUSION_DIVISOR = 4
 CW_PRINT_MAX_MM = 400.0
@@ -1219,6 +1220,46 @@ cw_print_facts._fields_ = [
 ]
 
 
+class cw_print_stand(Structure):
+    up: Any
+    overhang_mm2: float
+    height_mm: float
+    hull_mm2: float
+    tip_deg: float
+
+
+cw_print_stand._fields_ = [
+    ("up", c_double * 3),
+    ("overhang_mm2", c_double),
+    ("height_mm", c_double),
+    ("hull_mm2", c_double),
+    ("tip_deg", c_double),
+]
+
+
+class cw_orient_facts(Structure):
+    before: Any
+    after: Any
+    matrix: Any
+    directions: int
+    poses: int
+    unstable: int
+    is_stable: bool
+    is_kept: bool
+
+
+cw_orient_facts._fields_ = [
+    ("before", cw_print_stand),
+    ("after", cw_print_stand),
+    ("matrix", c_double * 12),
+    ("directions", c_size_t),
+    ("poses", c_size_t),
+    ("unstable", c_size_t),
+    ("is_stable", c_bool),
+    ("is_kept", c_bool),
+]
+
+
 class cw_extract_desc(Structure):
     version: int
     isovalue: float
@@ -1597,6 +1638,7 @@ class cw_findings(Structure):
     bare_looks: Any
     max_delta_e: float
     min_psnr_db: float
+    orient: Any
 
 
 cw_findings._fields_ = [
@@ -1620,6 +1662,7 @@ cw_findings._fields_ = [
     ("bare_looks", POINTER(cw_appearance)),
     ("max_delta_e", c_double),
     ("min_psnr_db", c_double),
+    ("orient", POINTER(cw_orient_facts)),
 ]
 
 
@@ -3908,6 +3951,7 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "cw_mesh_comparison_rms": (c_double, [POINTER(cw_mesh_comparison)]),
     "cw_mesh_comparison_max": (c_double, [POINTER(cw_mesh_comparison)]),
     "cw_print_measure": (c_int, [POINTER(cw_mesh), POINTER(cw_print_desc), POINTER(cw_print_facts), POINTER(cw_error)]),
+    "cw_orient_print": (c_int, [POINTER(cw_mesh), POINTER(cw_print_desc), POINTER(cw_orient_facts), POINTER(cw_error)]),
     "cw_extract": (c_int, [POINTER(cw_volume), POINTER(cw_extract_desc), POINTER(cw_mesh), POINTER(cw_extract_counts), POINTER(cw_error)]),
     "cw_extract_slabs": (c_int, [POINTER(cw_volume), POINTER(cw_extract_desc), c_size_t, cw_slab_sink, POINTER(cw_extract_counts), POINTER(cw_error)]),
     "cw_extract_predict": (c_int, [POINTER(cw_volume), POINTER(cw_extract_desc), POINTER(cw_extract_counts), POINTER(cw_error)]),
