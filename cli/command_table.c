@@ -9,6 +9,7 @@
 #include "cli/info/cmd_info.h"
 #include "cli/render/render_run.h"
 #include "cli/report/report_run.h"
+#include "cli/voxels/cmd_voxelize.h"
 #include "cli/window/panels.h"
 
 const cli_command *const cli_command_table[] = {

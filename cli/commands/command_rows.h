@@ -5,7 +5,6 @@
 #include "cli/framework/commands.h"
 
 extern const cli_command cli_boolean, cli_convert, cli_formats, cli_hollow, cli_make,
-    cli_offset, cli_remesh, cli_repair, cli_simplify, cli_smooth, cli_uv, cli_version,
-    cli_voxelize;
+    cli_offset, cli_remesh, cli_repair, cli_simplify, cli_smooth, cli_uv, cli_version;
 
 #endif

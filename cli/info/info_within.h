@@ -2,7 +2,7 @@
 #ifndef CLI_INFO_INFO_WITHIN_H
 #define CLI_INFO_INFO_WITHIN_H
 
-#include "cli/inputs/solid_input.h"
+#include "cli/voxels/solid_input.h"
 
 /* Values inside of each part of a mesh file. Zeroed: none was asked for. */
 typedef struct cli_within {

@@ -4,7 +4,7 @@
 
 #include "core/base/memory.h"
 #include "core/base/status.h"
-#include "core/geometry/row_side.h"
+#include "core/geometry/triangle.h"
 
 #include <math.h>
 #include <stdlib.h>

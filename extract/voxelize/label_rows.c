@@ -3,7 +3,7 @@
 
 #include "core/base/memory.h"
 #include "core/base/parallel.h"
-#include "core/geometry/row_side.h"
+#include "core/geometry/triangle.h"
 #include "core/volume/volume.h"
 
 #include <math.h>

@@ -10,41 +10,35 @@
 extern "C" {
 #endif
 
-/* Facts on one of the meshes that were voxelized. */
+/* Facts on one of the meshes that were voxelized. Of partial volumes the counts of voxels are 0. */
 typedef struct cw_voxelize_part {
-    double volume_mm3; /* that the whole mesh encloses, by its triangles */
-    double
-        filled_mm3; /* volume of its voxels in the grid; partial: of what they are covered by */
-    size_t voxels;  /* with its label, before later meshes replace some; partial: 0 */
-    size_t
-        overlapped; /* of them, voxels of an earlier mesh, whose label they lose; partial: 0 */
-    size_t
-        repeated; /* around which the mesh winds more than once: it overlaps itself; partial: 0 */
-    size_t
-        negative; /* around which it winds a negative number of times: they are outside; partial: 0 */
+    double volume_mm3;   /* that the whole mesh encloses, by its triangles */
+    double filled_mm3;   /* of its voxels in the grid, or of what partial volumes cover */
+    size_t voxels;       /* with its label, before later meshes replace some */
+    size_t overlapped;   /* of them, those that lose the label of an earlier mesh */
+    size_t repeated;     /* around which the mesh winds more than once: it overlaps itself */
+    size_t negative;     /* around which it winds a negative number of times: outside */
     size_t solids, lost; /* sets of triangles joined by vertices; those that no voxel shows */
-    size_t
-        thin_places; /* connected sets of triangles that are farther than a voxel from a border
-                            between inside and outside: thinner than a voxel, or in a narrow gap */
-    double thin_mm2; /* their area */
-    double area_mm2; /* of the whole mesh */
-    double
-        outside_mm2; /* area of the surface outside of the grid; this and thin_mm2 by samples */
-    bool turned;     /* it faced inward as a whole: it enclosed a negative volume */
-    bool open;       /* the call failed because it is open */
+    size_t thin_places;  /* connected sets of triangles that are farther than a voxel from the
+                            border of the voxels: at thin walls and narrow gaps */
+    double thin_mm2;     /* their area, by samples */
+    double area_mm2;     /* of the whole mesh */
+    double outside_mm2;  /* area of the surface outside of the grid, by samples */
+    bool turned;         /* it faced inward as a whole: it enclosed a negative volume */
+    bool open;           /* the call failed because it is open */
 } cw_voxelize_part;
 
-/* Options of a voxelization. Zero fields mean the default named beside them; either `like` or a spacing is
- * required. */
+/* Options of a voxelization. Zero fields mean the default named beside them; either `like` or a
+ * spacing is required. */
 typedef struct cw_voxelize_desc {
-    uint32_t version;      /* 0: the first version of this struct */
-    const cw_volume *like; /* volume whose grid is used; borrowed, its voxels are not read */
-    double spacing_mm[3];  /* of a grid along the axes of the world; y and z: 0 means as x */
-    double low[3],
-        high[3]; /* world box that this grid's voxels cover; default, both 0: the box of
-                                  the meshes and a voxel more on all sides */
+    uint32_t version;        /* 0: the first version of this struct */
+    const cw_volume *like;   /* whose grid is used; borrowed, its voxels are not read */
+    double spacing_mm[3];    /* of a grid along the world's axes; y and z: 0 means as x */
+    double low[3];           /* corner of the world box that this grid's voxels cover */
+    double high[3];          /* its other corner; default, both 0: the box of the meshes and a
+                                voxel more on all sides */
     const uint32_t *labels;  /* of each mesh, not 0; default: 1, 2, 3 ... */
-    bool partial;            /* fractions of voxels that the meshes cover; default: labels */
+    bool partial;            /* fractions of voxels that meshes cover; default: labels */
     size_t max_bytes;        /* of the voxels; default: no limit */
     cw_voxelize_part *parts; /* of each mesh: its facts are stored; default: none are */
     int threads;             /* default: all */
@@ -95,13 +89,14 @@ CW_NODISCARD CW_API cw_status cw_voxelize(const cw_mesh *const *meshes, size_t c
 /* Values of a volume inside of a mesh. */
 typedef struct cw_within {
     cw_voxelize_part mesh; /* facts on the mesh in the grid, as of partial volumes */
-    double volume_mm3; /* volume inside of the mesh that has values: in the grid, and no NaN or
-                              voxels without a value; 0: none has, and the next four are 0 */
-    double mean, sd; /* of the values, weighted by the fraction of each voxel that is inside */
-    double min,
-        max; /* of voxels at least half inside; if there are none, of all that are partly */
-    size_t voxels; /* partly inside, with a value */
-    size_t halves; /* of them, at least half inside */
+    double volume_mm3; /* inside of the mesh, in the grid and with values; 0: nothing is, and
+                              the next four are 0 */
+    double mean;       /* of the values, weighted by the fraction of each voxel inside */
+    double sd;         /* standard deviation, weighted as well */
+    double min;        /* of voxels at least half inside; if none is, of all partly inside */
+    double max;        /* of the same voxels */
+    size_t voxels;     /* partly inside, with a value */
+    size_t halves;     /* of them, at least half inside */
 } cw_within;
 
 /* Measures the values of the first component and step of a volume inside of a closed mesh. Voxels count by the

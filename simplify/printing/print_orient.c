@@ -328,6 +328,8 @@ static bool is_better(const search *s, const candidate *a, const candidate *b)
 static bool is_worth_turning(const search *s, const candidate *a, const candidate *now)
 {
     const bool stands = now->stand.tip_deg >= CW_MIN_TIP_DEG;
+    if (a->stand.tip_deg < CW_MIN_TIP_DEG && a->fits == now->fits)
+        return a->stand.tip_deg > now->stand.tip_deg + 1; /* neither stands */
     if (!stands || a->fits != now->fits)
         return is_better(s, a, now);
     const double overhang = now->stand.overhang_mm2 - a->stand.overhang_mm2,

@@ -283,11 +283,10 @@ static void judge_orientation(bench *b)
     }
     say_finding(
         v,
-        "with %.3g %.3g %.3g up overhangs are %.4g mm2, the height %.4g mm (now %.4g mm), and it tips "
-        "over at %.3g degrees (now %.3g)",
+        "%.3g %.3g %.3g up: overhangs %.4g mm2, height %.4g mm (now %.4g), tips over at %.3g "
+        "degrees (now %.3g); cw_orient_print() turns it",
         o->after.up[0], o->after.up[1], o->after.up[2], o->after.overhang_mm2,
         o->after.height_mm, o->before.height_mm, o->after.tip_deg, o->before.tip_deg);
-    v->advice = "cw_orient_print() turns it";
 }
 
 static void judge_support(bench *b)

@@ -1,4 +1,4 @@
-/* Voxels of meshes: exact on ties, against winding numbers, there and back, and what is told. */
+/* Voxels of meshes: exact on ties, against winding numbers, there and back, and facts on the meshes. */
 #include "support/solids.h"
 
 #include "core/base/memory.h"
@@ -246,7 +246,7 @@ static void a_smooth_surface_comes_back_within_half_a_voxel(void **state)
     cw_mesh_free(&mesh);
 }
 
-/* --- what is told ------------------------------------------------------------------------- */
+/* --- facts -------------------------------------------------------------------------------- */
 
 static void plates_thinner_than_a_voxel_are_counted(void **state)
 {

@@ -1,4 +1,4 @@
-/* The orientation of a print: known shapes, every facet of random hulls, and what is told. */
+/* The orientation of a print: known shapes, every base of random solids, the plate, and errors. */
 #include "support/solids.h"
 
 #include "core/base/memory.h"
@@ -184,7 +184,7 @@ static void a_ball_stays(void **state)
     cw_mesh_free(&ball);
 }
 
-/* What does not fit the plate lies down another way. */
+/* A block too long for the plate stands up. */
 static void the_plate_holds_the_print(void **state)
 {
     (void)state;

@@ -1,11 +1,11 @@
 /* The command voxelize: reads meshes and the grid of a scan, fills it with labels or partial volumes, and
  * writes that. */
-#include "cli/commands/command_rows.h"
+#include "cli/voxels/cmd_voxelize.h"
 #include "cli/framework/console.h"
 #include "cli/framework/quantity.h"
-#include "cli/inputs/solid_input.h"
 #include "cli/results/output_names.h"
 #include "cli/results/run_report.h"
+#include "cli/voxels/solid_input.h"
 #include "core/base/status.h"
 
 #include <stdio.h>

@@ -1,6 +1,6 @@
 /* Solids of one or more mesh files, each with a name and a label: parts of files, welded. */
-#ifndef CLI_INPUTS_SOLID_INPUT_H
-#define CLI_INPUTS_SOLID_INPUT_H
+#ifndef CLI_VOXELS_SOLID_INPUT_H
+#define CLI_VOXELS_SOLID_INPUT_H
 
 #include "cli/inputs/mesh_input.h"
 

@@ -1,5 +1,5 @@
 /* Reads solids for commands that fill them with voxels, and tells what became of them. */
-#include "cli/inputs/solid_input.h"
+#include "cli/voxels/solid_input.h"
 
 #include "cli/framework/console.h"
 #include "cli/framework/name_template.h"
@@ -126,7 +126,7 @@ void cli_free_solids(cli_solids *s)
     *s = (cli_solids){0};
 }
 
-/* --- what is told -------------------------------------------------------------------------- */
+/* --- messages ------------------------------------------------------------------------------ */
 
 /* Prints the file of a solid, and its name where several are read. */
 static const char *describe_solid(const cli_solids *s, size_t n, char text[512])
