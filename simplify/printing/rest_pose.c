@@ -116,27 +116,27 @@ static size_t find_lowest(const roll *r)
 static size_t tip_over(roll *r, const double at[3], const double axis[3], const double side[3],
                        bool is_edge)
 {
-    double best = INFINITY, down[3];
+    double best[2] = {0, 0}; /* ahead and depth, of the smallest angle between them */
     size_t hit = SIZE_MAX;
     for (size_t n = 0; n < r->body->count; n++) {
         double q[3];
         cwi_sub(r->body->points[n], at, q);
-        const double depth = -cwi_dot(q, r->down), ahead = cwi_dot(q, side);
+        const double depth = cwi_greater(-cwi_dot(q, r->down), 0), ahead = cwi_dot(q, side);
         const double along = is_edge ? 0 : cwi_dot(q, axis);
-        if (depth * depth + ahead * ahead + along * along <= r->touch * r->touch)
-            continue; /* on the axis */
-        const double angle = atan2(cwi_greater(depth, 0), ahead);
-        if (angle < best) {
-            best = angle;
-            hit = n;
-        }
+        if (depth * depth + ahead * ahead + along * along <= r->touch * r->touch ||
+            (depth == 0 && ahead <= 0))
+            continue; /* on the axis, or on the plate behind it */
+        if (hit != SIZE_MAX && ahead * best[1] <= depth * best[0])
+            continue;
+        best[0] = ahead;
+        best[1] = depth;
+        hit = n;
     }
-    if (hit == SIZE_MAX || best >= CWI_PI)
+    if (hit == SIZE_MAX)
         return SIZE_MAX;
     for (int a = 0; a < 3; a++)
-        down[a] = cos(best) * r->down[a] + sin(best) * side[a];
-    cwi_to_unit(down);
-    memcpy(r->down, down, sizeof r->down);
+        r->down[a] = best[0] * r->down[a] + best[1] * side[a];
+    cwi_to_unit(r->down);
     return hit;
 }
 
