@@ -83,6 +83,7 @@ static cw_status write_file(const char *path, const driver *f, const cw_write_de
     save->name = name;
     save->gzip = cwi_has_extension(path, ".gz");
     save->progress = &desc->progress;
+    save->labels = desc->labels && desc->labels->count ? desc->labels : NULL;
     cw_status st = cwi_outfile_open(&save->file, path, desc->no_clobber, err);
     if (st == CW_OK)
         st = f->save.save(save, err);

@@ -270,6 +270,10 @@ static cw_status measure_print(cli_check_run *s, cw_error *err)
                        ? measure_walls(s, &desc, err)
                        : cw_print_measure(mesh, &desc, &s->print, err);
     s->findings.print = st == CW_OK ? &s->print : NULL;
+    desc.wall = desc.gap = NULL;
+    if (st == CW_OK && mesh->triangle_count)
+        st = cw_orient_print(mesh, &desc, &s->orient, err);
+    s->findings.orient = st == CW_OK && s->orient.poses ? &s->orient : NULL;
     if (st == CW_OK)
         cli_report_end(&s->report, "print", mesh->triangle_count, 0);
     return in_mesh(s, st, err);

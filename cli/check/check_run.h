@@ -40,6 +40,7 @@ typedef struct cli_check_run {
     cw_crossings crossings;
     cw_cgal_facts cgal;
     cw_print_facts print;
+    cw_orient_facts orient;
     cw_distance to_field, from_field, to_reference, from_reference;
     cw_appearance looks, bare_looks; /* with the maps on the mesh, and without */
     bool has_maps;                   /* on the mesh */

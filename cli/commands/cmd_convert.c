@@ -2,6 +2,7 @@
 #include "cli/commands/command_rows.h"
 #include "cli/commands/convert_asset.h"
 #include "cli/commands/mesh_command.h"
+#include "cli/commands/orient_print.h"
 #include "cli/framework/console.h"
 #include "cli/framework/quantity.h"
 #include "cli/inputs/cut_options.h"
@@ -16,10 +17,16 @@ typedef struct convert_args {
     cli_placing placing;
     cli_plane cut;
     cli_number crease;
+    cli_number orient_print;
     bool split, check;
     int profile; /* 0: none, else 1 + that of cli_find_asset() */
     int pivot;   /* of a profile's levels */
 } convert_args;
+
+typedef struct convert_state {
+    cw_cut_facts cut;
+    cw_orient_facts orient; /* of --orient-print */
+} convert_state;
 
 static const convert_args *args_of(const cli_mesh_run *r)
 {
@@ -43,6 +50,9 @@ static const cli_option options[] = {
      "Write a file for each part; of a mesh that is one, for each component (off)",
      offsetof(convert_args, split)},
     CLI_MESH_ORIENT,
+    {"orient-print", 0, CLI_NUMBER, "auto/DEG",
+     "Turn to the pose that prints with the least support: overhangs beyond 45 degrees, or DEG (off)",
+     offsetof(convert_args, orient_print)},
     {"cut-plane", 0, CLI_PLANE, "PLANE",
      "Cut by a plane, keep what is above, and close it flat: z=5mm, z=10% of the box, -z=5mm keeps "
      "what is below, or x,y,z:nx,ny,nz (off)",
@@ -85,8 +95,10 @@ static void put_params(cli_json *j, const cli_mesh_run *r, const cli_made *made)
 
 static void put_facts(cli_json *j, const cli_mesh_run *r)
 {
+    const convert_state *s = r->state;
     if (args_of(r)->cut.given)
-        cli_json_cut(j, r->state);
+        cli_json_cut(j, &s->cut);
+    cli_json_orient(j, &s->orient);
 }
 
 static cw_status check_values(cli_mesh_run *r, cw_error *err)
@@ -102,6 +114,12 @@ static cw_status check_values(cli_mesh_run *r, cw_error *err)
                         "--profile %s: levels and maps in one file are for .glb and .gltf",
                         asset_of(r)->name);
     cw_status st = cli_check_crease(&args_of(r)->crease, err);
+    const cli_number *orient = &args_of(r)->orient_print;
+    if (st == CW_OK && orient->given && !orient->is_word &&
+        !(orient->value > 0 && orient->value < 90))
+        st = cwi_fail(err, CW_ERR_ARGUMENT,
+                      "--orient-print %g: expected auto, or degrees above 0 and below 90",
+                      orient->value);
     return st == CW_OK ? cli_check_placing(&args_of(r)->placing, err) : st;
 }
 
@@ -147,15 +165,18 @@ static cw_status part_all_normals(cli_mesh_run *r, cw_error *err)
     return CW_OK;
 }
 
-/* Places the mesh, then cuts it there. */
+/* Turns the mesh for printing, places it, then cuts it there. */
 static cw_status change_mesh(cli_mesh_run *r, cw_error *err)
 {
     const convert_args *args = args_of(r);
     cw_status st = CW_OK;
-    if (cli_places(&args->placing))
+    convert_state *s = r->state;
+    if (args->orient_print.given)
+        st = cli_orient_for_print(&args->orient_print, r->threads, &r->mesh, &s->orient, err);
+    if (st == CW_OK && cli_places(&args->placing))
         st = cli_place_parts(&args->placing, &r->mesh, err);
     if (st == CW_OK && args->cut.given)
-        st = cli_cut_parts(&args->cut, &r->mesh, r->state, err);
+        st = cli_cut_parts(&args->cut, &r->mesh, &s->cut, err);
     return st == CW_OK && cli_crease_degrees(&args->crease) > 0 && !asset_of(r)
                ? part_all_normals(r, err)
                : st;
@@ -253,9 +274,9 @@ static void fill_profile(convert_args *args)
 
 static cw_status run_convert(void *args, cw_error *err)
 {
-    cw_cut_facts cut = {0};
+    convert_state state = {0};
     fill_profile(args);
-    return cli_run_mesh_command(&convert, args, &cut, 1 + CW_BUDGET_LEVELS, err);
+    return cli_run_mesh_command(&convert, args, &state, 1 + CW_BUDGET_LEVELS, err);
 }
 
 const cli_command cli_convert = {

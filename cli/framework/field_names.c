@@ -49,6 +49,7 @@ static const struct {
     {"cw_mesh_repair() with wrap_mm", "'repair --wrap 2%', which needs CGAL,"},
     {"cw_mesh_repair() with outer_only", "'repair --outer'"},
     {"cw_mesh_repair()", "'repair'"},
+    {"cw_orient_print()", "'convert --orient-print auto'"},
     {"cw_volume_read() takes one of them", "--batch takes each by itself"},
     {"min_wall_mm", "--wall"},
     {"min_gap_mm", "--gap"},

@@ -69,6 +69,9 @@ const cli_synonym cli_synonyms[] = {
      "--input-unit|--unit|--source-unit|--spacing", NULL},
     {"axis|axes|orientation|lps|ras|z-up|y-up", "frame",
      "--input-frame|--input-up|--frame|--up|--axes|--letters", NULL},
+    {"voxeli|rasteri|scan conver|partial volume|mesh to volume|mesh to label|stencil",
+     "voxelize", "voxelize|--within|--partial",
+     "'voxelize --like SCAN' makes labels or partial volumes of closed meshes on the grid of a scan."},
     {"shell|wall|infill|lighten|thickness", "hollow", "hollow|--wall|--drain", NULL},
     {"dilat|erod|thicken|inflate|grow|expand|shrink", "offset", "offset|--by", NULL},
     {"flip|invert|inside out|inside-out", "orient", "--orient|--inside", NULL},
@@ -88,6 +91,9 @@ const cli_synonym cli_synonyms[] = {
      "cubewright writes no videos. 'render --turntable' writes numbered pictures, 'extract "
      "--animate' an animated glTF file."},
     {"animation|spin", NULL, "--turntable|--orbit|--animate|turntable", NULL},
+    {"overhang|support structure|supports|build orientation|print orientation|lay flat", NULL,
+     "--orient-print|--overhang|--profile",
+     "'convert --orient-print auto' turns a mesh to the pose that prints with the least support."},
     {"rotat|turn", NULL, "--rotate|--up|--input-up|--turntable|--orbit", NULL},
     {"mirror|reflect", NULL, "--mirror|--input-frame|--frame",
      "A surface that comes out mirrored is in another frame than its reader expects: "

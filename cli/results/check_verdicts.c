@@ -15,7 +15,8 @@ void cli_print_verdicts(const cw_verdict *verdicts, size_t count)
 {
     for (const cw_verdict *v = verdicts; v < verdicts + count; v++) {
         const char *grade = v->grade == CW_GRADE_FAIL ? "FAIL" : cw_grade_name(v->grade);
-        cli_result("  %-8s%-19s%s\n", grade, v->name, v->text);
+        cli_result("  %-8s%-19s%s\n", grade, v->name,
+                   cli_name_options(v->text, (char[CLI_MESSAGE]){0}));
         if (v->advice && v->grade < CW_GRADE_OK)
             cli_result("  %-8s%-19s-> %s\n", "", "",
                        cli_name_options(v->advice, (char[CLI_MESSAGE]){0}));

@@ -4,6 +4,7 @@
 
 #include "core/base/memory.h"
 #include "core/base/status.h"
+#include "core/geometry/triangle.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -16,7 +17,7 @@ enum { FINE = 1 << 14 };
 
 typedef struct corner {
     double x;
-    int64_t y, z;
+    int64_t yz[2];
 } corner;
 
 typedef struct mapping {
@@ -31,23 +32,7 @@ static corner corner_of(const mapping *m, uint32_t vertex)
     double at[3];
     for (int a = 0; a < 3; a++)
         at[a] = ((double)p[a] - m->first[a]) / m->voxel_mm;
-    return (corner){at[0], llrint(at[1] * FINE), llrint(at[2] * FINE)};
-}
-
-/* Returns twice the area of a, b and the row, seen along it: positive when they run
- * counter-clockwise. */
-static int64_t edge_area(const corner *a, const corner *b, int64_t y, int64_t z)
-{
-    return (b->y - a->y) * (z - a->z) - (b->z - a->z) * (y - a->y);
-}
-
-/* Returns true if the row is to the left of the edge. A row that meets the edge is treated as
- * if it stood at (y + e, z + e * e), for an e that is smaller than any number. */
-static bool is_left(int64_t twice_area, const corner *a, const corner *b)
-{
-    if (twice_area != 0)
-        return twice_area > 0;
-    return a->z != b->z ? a->z > b->z : b->y > a->y;
+    return (corner){at[0], {llrint(at[1] * FINE), llrint(at[2] * FINE)}};
 }
 
 static int64_t ceil_div(int64_t a)
@@ -65,18 +50,18 @@ static int64_t min_of_three(int64_t a, int64_t b, int64_t c)
  * them. */
 static void cross_rows(cwi_winding *w, const corner c[3], int turn, bool keep)
 {
-    const int64_t low_y = ceil_div(min_of_three(c[0].y, c[1].y, c[2].y)),
-                  low_z = ceil_div(min_of_three(c[0].z, c[1].z, c[2].z)),
-                  high_y = -ceil_div(min_of_three(-c[0].y, -c[1].y, -c[2].y)),
-                  high_z = -ceil_div(min_of_three(-c[0].z, -c[1].z, -c[2].z));
+    const int64_t low_y = ceil_div(min_of_three(c[0].yz[0], c[1].yz[0], c[2].yz[0])),
+                  low_z = ceil_div(min_of_three(c[0].yz[1], c[1].yz[1], c[2].yz[1])),
+                  high_y = -ceil_div(min_of_three(-c[0].yz[0], -c[1].yz[0], -c[2].yz[0])),
+                  high_z = -ceil_div(min_of_three(-c[0].yz[1], -c[1].yz[1], -c[2].yz[1]));
     for (int64_t k = low_z; k <= high_z; k++)
         for (int64_t j = low_y; j <= high_y; j++) {
             int64_t side[3];
             bool in = true;
             for (int n = 0; n < 3 && in; n++) {
-                const corner *from = &c[(n + 1) % 3], *to = &c[(n + 2) % 3];
-                side[n] = edge_area(from, to, j * FINE, k * FINE);
-                in = is_left(side[n], from, to);
+                const int64_t *from = c[(n + 1) % 3].yz, *to = c[(n + 2) % 3].yz;
+                side[n] = cwi_row_area(from, to, j * FINE, k * FINE);
+                in = cwi_row_is_left(side[n], from, to);
             }
             if (!in)
                 continue;
@@ -100,7 +85,7 @@ static void each_triangle(cwi_winding *w, const mapping *m, bool keep)
         corner c[3];
         for (int n = 0; n < 3; n++)
             c[n] = corner_of(m, m->mesh->triangles[3 * t + (size_t)n]);
-        const int64_t twice = edge_area(&c[0], &c[1], c[2].y, c[2].z);
+        const int64_t twice = cwi_row_area(c[0].yz, c[1].yz, c[2].yz[0], c[2].yz[1]);
         if (twice < 0) {
             const corner swap = c[1];
             c[1] = c[2];

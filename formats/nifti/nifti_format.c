@@ -6,6 +6,7 @@ const cwi_format_driver cwi_format_nifti = {
     .extensions = ".nii .nii.gz .hdr",
     .about = "NIfTI volume, plain or gzipped",
     .lost = "the frame beyond single precision",
+    .keeps = CW_KEEPS_LABELS,
     .volume = {.extensions = ".nii .nii.gz .hdr .hdr.gz .img .img.gz",
                .gzipped = true,
                .sniff = cwi_nifti_sniff,

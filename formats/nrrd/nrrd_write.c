@@ -1,6 +1,11 @@
 /* Writes NRRD: one gzipped file; doubles are written so that they read back to the bit. */
+#include "core/base/memory.h"
+#include "core/base/status.h"
+#include "core/base/text.h"
 #include "formats/bytes/byte_order.h"
 #include "formats/nrrd/nrrd_format.h"
+
+#include <stdlib.h>
 
 static const char *const types[CW_TYPE_COUNT] = {
     [CW_U8] = "uint8",   [CW_I8] = "int8",   [CW_U16] = "uint16", [CW_I16] = "int16",
@@ -81,6 +86,46 @@ static cw_status write_time(const cwi_save *save, cw_error *err)
     return st == CW_OK ? cwi_outfile_printf(save->file, err, " \"s\"\n") : st;
 }
 
+/* Writes a name; a backslash and what would end the line are escaped. */
+static cw_status write_name(const cwi_save *save, uint32_t number, const cw_label *label,
+                            cw_error *err)
+{
+    char *text;
+    size_t size;
+    FILE *out = cwi_text_open(&text, &size);
+    for (const char *s = label->name; out && *s; s++)
+        if (*s == '\\')
+            fputs("\\\\", out);
+        else
+            fputc((unsigned char)*s < ' ' ? ' ' : *s, out);
+    if (!cwi_text_close(out, &text))
+        return cwi_fail_memory(err);
+    const cw_status st =
+        cwi_outfile_printf(save->file, err, "Segment%u_Name:=%s\n", (unsigned)number, text);
+    free(text);
+    return st;
+}
+
+/* Writes the names and colours of labels as 3D Slicer does, in the order of the table. */
+static cw_status write_segments(const cwi_save *save, cw_error *err)
+{
+    cw_status st = CW_OK;
+    for (uint32_t n = 0; save->labels && n < save->labels->count && st == CW_OK; n++) {
+        const cw_label *label = &save->labels->labels[n];
+        const uint8_t *c = label->color;
+        st = cwi_outfile_printf(save->file, err,
+                                "Segment%u_ID:=Segment_%u\nSegment%u_LabelValue:=%u\n"
+                                "Segment%u_Layer:=%u\n",
+                                n, label->value, n, label->value, n, label->layer);
+        if (st == CW_OK && label->name)
+            st = write_name(save, n, label, err);
+        if (st == CW_OK && label->has_color)
+            st = cwi_outfile_printf(save->file, err, "Segment%u_Color:=%.6g %.6g %.6g\n", n,
+                                    c[0] / 255.0, c[1] / 255.0, c[2] / 255.0);
+    }
+    return st;
+}
+
 static cw_status write_header(const cwi_save *save, cw_error *err)
 {
     cw_status st = cwi_outfile_printf(save->file, err, "NRRD0005\ncontent: %s\ntype: %s\n",
@@ -97,9 +142,11 @@ static cw_status write_header(const cwi_save *save, cw_error *err)
     if (st == CW_OK)
         st = write_time(save, err);
     if (st == CW_OK)
-        st = cwi_outfile_printf(save->file, err, "endian: %s\nencoding: gzip\n\n",
+        st = cwi_outfile_printf(save->file, err, "endian: %s\nencoding: gzip\n",
                                 cwi_machine_is_big_endian() ? "big" : "little");
-    return st;
+    if (st == CW_OK)
+        st = write_segments(save, err);
+    return st == CW_OK ? cwi_outfile_printf(save->file, err, "\n") : st;
 }
 
 cw_status cwi_nrrd_save(const cwi_save *save, cw_error *err)

@@ -13,6 +13,7 @@ typedef struct cwi_save {
     const char *name; /* one line of text */
     bool gzip;        /* the path ends in .gz */
     const cw_progress *progress;
+    const cw_label_table *labels; /* of a label map; NULL: none */
 } cwi_save;
 
 typedef cw_status cwi_volume_saver(const cwi_save *save, cw_error *err);

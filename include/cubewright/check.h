@@ -51,6 +51,7 @@ typedef struct cw_findings {
     const cw_appearance *bare_looks; /* the same without maps, if there are some */
     double max_delta_e;              /* limit of their mean CIEDE2000; 0: none */
     double min_psnr_db;              /* limit of their PSNR; 0: none */
+    const cw_orient_facts *orient;   /* cw_orient_print() */
 } cw_findings;
 
 enum { CW_BUDGET_LEVELS = 4 }; /* maximum of levels of detail in a budget */

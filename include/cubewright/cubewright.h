@@ -39,5 +39,6 @@
 #include <cubewright/team.h>
 #include <cubewright/transfer.h>
 #include <cubewright/volume.h>
+#include <cubewright/voxelize.h>
 
 #endif

@@ -607,6 +607,10 @@ typedef struct cw_write_desc {
     const cw_provenance *provenance; /* in the extras of a glTF file; default: none */
     size_t provenance_count;         /* number of lines */
     cw_progress progress;            /* default: none */
+    const cw_label_table
+        *labels; /* volume: names and colours of its labels, for a format whose keeps have
+                                     CW_KEEPS_LABELS: NRRD (as segments of 3D Slicer) and NIfTI (as the
+                                     LabelTable of Connectome Workbench); others leave them out; default: none */
 } cw_write_desc;
 
 /* Writes a volume to a file beside the path, flushes it, then renames it. So the path holds
@@ -776,7 +780,8 @@ CW_NODISCARD CW_API cw_status cw_pvd_write(const char *path, const cw_pvd_entry 
                                            size_t count, const cw_write_desc *desc,
                                            cw_error *err);
 
-/* The properties of a mesh that a file of a format holds. */
+/* The properties of a mesh that a file of a format holds. Of the formats of volumes, those with
+ * CW_KEEPS_LABELS hold cw_write_desc.labels. */
 typedef enum cw_keeps {
     CW_KEEPS_SHARING = 1, /* vertices that triangles share */
     CW_KEEPS_PLACES =

@@ -25,6 +25,7 @@ from ._handles import Closed, close_handles
 from ._library import lib as _lib
 from ._memory import memory_limit, memory_used
 from ._mesh import Mesh
+from ._orient import Oriented, Stand, orient_print
 from ._pieces import Piece, Pieces, cut_pieces
 from ._place import crease_normals, split, transform
 from ._progress import Progress
@@ -34,6 +35,7 @@ from ._render import render, write_png
 from ._repair import Repaired, repair
 from ._simplify import Smoothed, hollow, offset, simplify, simplify_levels, smooth, weld
 from ._volume import Label, Statistics, Volume
+from ._voxelize import Voxelized, VoxelizedPart, Within, measure_within, voxelize
 from ._write import Written, write
 
 __version__: str = _lib.cw_version().decode()
@@ -54,6 +56,7 @@ __all__ = [
     "LabelSurfaces",
     "LookDifference",
     "Mesh",
+    "Oriented",
     "Part",
     "Patch",
     "Piece",
@@ -63,11 +66,15 @@ __all__ = [
     "Repaired",
     "Settings",
     "Smoothed",
+    "Stand",
     "Statistics",
     "Status",
     "TextureDistance",
     "Verdict",
     "Volume",
+    "Voxelized",
+    "VoxelizedPart",
+    "Within",
     "Written",
     "appearance",
     "appearance_view",
@@ -89,9 +96,11 @@ __all__ = [
     "formats",
     "hollow",
     "make",
+    "measure_within",
     "memory_limit",
     "memory_used",
     "offset",
+    "orient_print",
     "read_mesh",
     "read_parts",
     "read_volume",
@@ -105,6 +114,7 @@ __all__ = [
     "split",
     "texture_distance",
     "transform",
+    "voxelize",
     "weld",
     "write",
     "write_png",

@@ -91,6 +91,7 @@ class Measurer:
         self.quality = c.cw_quality()
         self.crossings = c.cw_crossings()
         self.print = c.cw_print_facts()
+        self.orient = c.cw_orient_facts()
         self.distances: dict[str, c.cw_distance] = {}
 
     def call(self, function: Callable[..., int], desc: Any, before: tuple[Any, ...], after: tuple[Any, ...]) -> None:
@@ -115,6 +116,8 @@ class Measurer:
         if self.mesh.triangle_count and lib.cw_quality_is_closed_manifold(byref(self.quality)):
             self.call(lib.cw_print_measure, desc, (byref(self.mesh),), (byref(self.print),))
             self.findings.print = pointer(self.print)
+            self.call(lib.cw_orient_print, desc, (byref(self.mesh),), (byref(self.orient),))
+            self.findings.orient = pointer(self.orient)
 
     def measure_mesh_distance(
         self, name: str, mesh: c.cw_mesh, other: c.cw_mesh, desc: Any, each: Any = None

@@ -56,6 +56,7 @@ CW_FEM_MAX_ASPECT = 10.0
 CW_FEM_MIN_ANGLE_DEG = 10.0
 CW_HANDLE_FRACTION = 0.03
 CW_MAX_CUT_PLANES = 256
+CW_MIN_TIP_DEG = 5.0
 CW_NEEDLE_RATIO = 20.0
 CW_OCCLUSION_DIVISOR = 4
 CW_PRINT_MAX_MM = 400.0
@@ -1224,6 +1225,46 @@ cw_print_facts._fields_ = [
 ]
 
 
+class cw_print_stand(Structure):
+    up: Any
+    overhang_mm2: float
+    height_mm: float
+    hull_mm2: float
+    tip_deg: float
+
+
+cw_print_stand._fields_ = [
+    ("up", c_double * 3),
+    ("overhang_mm2", c_double),
+    ("height_mm", c_double),
+    ("hull_mm2", c_double),
+    ("tip_deg", c_double),
+]
+
+
+class cw_orient_facts(Structure):
+    before: Any
+    after: Any
+    matrix: Any
+    directions: int
+    poses: int
+    unstable: int
+    is_stable: bool
+    is_kept: bool
+
+
+cw_orient_facts._fields_ = [
+    ("before", cw_print_stand),
+    ("after", cw_print_stand),
+    ("matrix", c_double * 12),
+    ("directions", c_size_t),
+    ("poses", c_size_t),
+    ("unstable", c_size_t),
+    ("is_stable", c_bool),
+    ("is_kept", c_bool),
+]
+
+
 class cw_extract_desc(Structure):
     version: int
     isovalue: float
@@ -1602,6 +1643,7 @@ class cw_findings(Structure):
     bare_looks: Any
     max_delta_e: float
     min_psnr_db: float
+    orient: Any
 
 
 cw_findings._fields_ = [
@@ -1625,6 +1667,7 @@ cw_findings._fields_ = [
     ("bare_looks", POINTER(cw_appearance)),
     ("max_delta_e", c_double),
     ("min_psnr_db", c_double),
+    ("orient", POINTER(cw_orient_facts)),
 ]
 
 
@@ -2346,6 +2389,7 @@ class cw_write_desc(Structure):
     provenance: Any
     provenance_count: int
     progress: Any
+    labels: Any
 
 
 cw_write_desc._fields_ = [
@@ -2366,6 +2410,7 @@ cw_write_desc._fields_ = [
     ("provenance", POINTER(cw_provenance)),
     ("provenance_count", c_size_t),
     ("progress", cw_progress),
+    ("labels", POINTER(cw_label_table)),
 ]
 
 
@@ -3907,6 +3952,93 @@ class cw_slice_filter(Structure):
     pass
 
 
+class cw_voxelize_part(Structure):
+    volume_mm3: float
+    filled_mm3: float
+    voxels: int
+    overlapped: int
+    repeated: int
+    negative: int
+    solids: int
+    lost: int
+    thin_places: int
+    thin_mm2: float
+    area_mm2: float
+    outside_mm2: float
+    turned: bool
+    open: bool
+
+
+cw_voxelize_part._fields_ = [
+    ("volume_mm3", c_double),
+    ("filled_mm3", c_double),
+    ("voxels", c_size_t),
+    ("overlapped", c_size_t),
+    ("repeated", c_size_t),
+    ("negative", c_size_t),
+    ("solids", c_size_t),
+    ("lost", c_size_t),
+    ("thin_places", c_size_t),
+    ("thin_mm2", c_double),
+    ("area_mm2", c_double),
+    ("outside_mm2", c_double),
+    ("turned", c_bool),
+    ("open", c_bool),
+]
+
+
+class cw_voxelize_desc(Structure):
+    version: int
+    like: Any
+    spacing_mm: Any
+    low: Any
+    high: Any
+    labels: Any
+    partial: bool
+    max_bytes: int
+    parts: Any
+    threads: int
+    progress: Any
+
+
+cw_voxelize_desc._fields_ = [
+    ("version", c_uint32),
+    ("like", POINTER(cw_volume)),
+    ("spacing_mm", c_double * 3),
+    ("low", c_double * 3),
+    ("high", c_double * 3),
+    ("labels", POINTER(c_uint32)),
+    ("partial", c_bool),
+    ("max_bytes", c_size_t),
+    ("parts", POINTER(cw_voxelize_part)),
+    ("threads", c_int),
+    ("progress", cw_progress),
+]
+
+
+class cw_within(Structure):
+    mesh: Any
+    volume_mm3: float
+    mean: float
+    sd: float
+    min: float
+    max: float
+    voxels: int
+    halves: int
+
+
+cw_within._fields_ = [
+    ("mesh", cw_voxelize_part),
+    ("volume_mm3", c_double),
+    ("mean", c_double),
+    ("sd", c_double),
+    ("min", c_double),
+    ("max", c_double),
+    ("voxels", c_size_t),
+    ("halves", c_size_t),
+]
+
+
 cw_slice = cw_clip
 
 # The result and the arguments of each function.
@@ -4005,6 +4137,7 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "cw_mesh_comparison_rms": (c_double, [POINTER(cw_mesh_comparison)]),
     "cw_mesh_comparison_max": (c_double, [POINTER(cw_mesh_comparison)]),
     "cw_print_measure": (c_int, [POINTER(cw_mesh), POINTER(cw_print_desc), POINTER(cw_print_facts), POINTER(cw_error)]),
+    "cw_orient_print": (c_int, [POINTER(cw_mesh), POINTER(cw_print_desc), POINTER(cw_orient_facts), POINTER(cw_error)]),
     "cw_extract": (c_int, [POINTER(cw_volume), POINTER(cw_extract_desc), POINTER(cw_mesh), POINTER(cw_extract_counts), POINTER(cw_error)]),
     "cw_extract_slabs": (c_int, [POINTER(cw_volume), POINTER(cw_extract_desc), c_size_t, cw_slab_sink, POINTER(cw_extract_counts), POINTER(cw_error)]),
     "cw_extract_predict": (c_int, [POINTER(cw_volume), POINTER(cw_extract_desc), POINTER(cw_extract_counts), POINTER(cw_error)]),
@@ -4219,6 +4352,8 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "cw_slice_filter_new": (c_int, [POINTER(cw_slice_source), POINTER(cw_slice_filter_desc), POINTER(POINTER(cw_slice_filter)), POINTER(cw_error)]),
     "cw_slice_filter_source": (cw_slice_source, [POINTER(cw_slice_filter)]),
     "cw_slice_filter_free": (None, [POINTER(cw_slice_filter)]),
+    "cw_voxelize": (c_int, [POINTER(POINTER(cw_mesh)), c_size_t, POINTER(cw_voxelize_desc), POINTER(cw_volume), POINTER(cw_error)]),
+    "cw_volume_within": (c_int, [POINTER(cw_volume), POINTER(cw_mesh), c_int, POINTER(cw_within), POINTER(cw_error)]),
 }
 
 VARIABLES: dict[str, Any] = {

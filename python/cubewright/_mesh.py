@@ -207,6 +207,12 @@ class Mesh:
         copied.attributes.update_from(self.attributes)
         return copied
 
+    def voxelize(self, *, like: Any = None, spacing: Any = None, **options: Any) -> Any:
+        """Makes voxels of the mesh, which is closed: see voxelize(). Returns a Voxelized."""
+        from ._voxelize import voxelize
+
+        return voxelize(self, like=like, spacing=spacing, **options)
+
     def to_trimesh(self) -> Any:
         """Returns a trimesh.Trimesh in world coordinates (float64), not processed.
 

@@ -18,7 +18,7 @@ from ._options import take_choice, take_count, take_flag, take_length, take_path
 from ._progress import Progress, Reporter
 from ._read import PICTURES, UNITS, Part, Path
 from ._render import borrow_image
-from ._volume import Volume
+from ._volume import Label, Volume
 
 COMPRESSIONS = ("none", "quantize", "draco", "meshopt")
 
@@ -101,6 +101,9 @@ def write(
     desc = make_write_desc(options, reporter)
     result = c.cw_compressed()
     if isinstance(what, Volume):
+        if what.labels:
+            rows = (c.cw_label * len(what.labels))(*(make_label(label) for label in what.labels))
+            desc.labels = pointer(c.cw_label_table(count=len(rows), labels=rows))
         reporter.call(lib.cw_volume_write, target, byref(what._struct), byref(desc))
         return summarize(result)
     if compress != "none":
@@ -131,14 +134,18 @@ def fill_part(part: c.cw_part, given: Part) -> None:
         part.textures = pointer(c.cw_textures(**files))
     if given.label is None:
         return
-    label = c.cw_label(value=given.label.value, layer=given.label.layer)
-    if given.label.name is not None:
-        name = create_string_buffer(take_text("a label's name", given.label.name) or b"")
+    part.label = pointer(make_label(given.label))
+
+
+def make_label(given: Label) -> c.cw_label:
+    label = c.cw_label(value=given.value, layer=given.layer)
+    if given.name is not None:
+        name = create_string_buffer(take_text("a label's name", given.name) or b"")
         label.name = cast(name, POINTER(c_char))
-    if given.label.color is not None:
+    if given.color is not None:
         label.has_color = True
-        label.color[:] = given.label.color
-    part.label = pointer(label)
+        label.color[:] = given.color
+    return label
 
 
 def borrow_bytes(use: str, data: bytes) -> c.cw_texture:

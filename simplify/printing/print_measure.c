@@ -2,6 +2,8 @@
 #include "core/geometry/box.h"
 #include "core/mesh/mesh_triangle.h"
 #include "simplify/printing/islands.h"
+#include "simplify/printing/outline.h"
+#include "simplify/printing/print_limits.h"
 #include "simplify/printing/wall_rays.h"
 
 #include "core/base/memory.h"
@@ -30,7 +32,7 @@ static cw_status take_limit(const char *name, double value, double otherwise, do
     return CW_OK;
 }
 
-static cw_status resolve_desc(const cw_print_desc *desc, cw_print_desc *out, cw_error *err)
+cw_status cwi_print_limits(const cw_print_desc *desc, cw_print_desc *out, cw_error *err)
 {
     const cw_print_desc given = desc ? *desc : (cw_print_desc){0};
     *out = given;
@@ -115,61 +117,13 @@ static void sum_triangles(const cw_mesh *mesh, const cw_print_desc *limits, cons
 
 /* --- how it stands ------------------------------------------------------------------------ */
 
-typedef struct plan_point {
-    double x, y;
-} plan_point;
-
-static int compare_points(const void *a, const void *b)
-{
-    const plan_point *p = a, *q = b;
-    return p->x != q->x ? (p->x < q->x ? -1 : 1) : p->y < q->y ? -1 : p->y > q->y;
-}
-
-/* Returns twice the area to the left of a path over three points. */
-static double turn_left(const plan_point *a, const plan_point *b, const plan_point *c)
-{
-    return (b->x - a->x) * (c->y - a->y) - (b->y - a->y) * (c->x - a->x);
-}
-
-/* Leaves the corners of the outline around sorted points, against the clock, in `hull`. Returns how
- * many: those of the lower side, and then of the upper one [Andrew1979]. */
-static size_t find_outline(const plan_point *points, size_t count, plan_point *hull)
-{
-    size_t corners = 0;
-    for (int side = 0; side < 2; side++) {
-        const size_t min_corners = corners + 1;
-        for (size_t n = 0; n < count; n++) {
-            const plan_point *p = points + (side ? count - 1 - n : n);
-            while (corners > min_corners &&
-                   turn_left(hull + corners - 2, hull + corners - 1, p) <= 0)
-                corners--;
-            hull[corners++] = *p;
-        }
-        corners--; /* the last one begins the other side */
-    }
-    return corners;
-}
-
-/* Returns how far a point is inside of an outline; negative: outside, or there is no area. */
-static double find_margin(const plan_point *hull, size_t corners, const plan_point *point)
-{
-    double margin = INFINITY;
-    for (size_t n = 0; n < corners; n++) {
-        const plan_point *a = hull + n, *b = hull + (n + 1) % corners;
-        const double length = hypot(b->x - a->x, b->y - a->y);
-        if (length > 0)
-            margin = cwi_lesser(margin, turn_left(a, b, point) / length);
-    }
-    return isfinite(margin) ? margin : 0;
-}
-
 /* Measures the foot's outline: points lower than a layer. */
 static cw_status measure_stand(const cw_mesh *mesh, const cw_print_desc *limits, double bottom,
                                cw_print_facts *facts, cw_error *err)
 {
     size_t count = 0, corners;
-    plan_point *points = cwi_alloc_array(mesh->vertex_count, sizeof *points),
-               *hull = cwi_alloc_array(2 * mesh->vertex_count + 2, sizeof *hull);
+    cwi_plan_point *points = cwi_alloc_array(mesh->vertex_count, sizeof *points),
+                   *hull = cwi_alloc_array(2 * mesh->vertex_count + 2, sizeof *hull);
     uint8_t *taken = cwi_alloc_zeroed(mesh->vertex_count, 1);
     cw_status st = points && hull && taken ? CW_OK : cwi_fail_memory(err);
     for (size_t c = 0; c < 3 * mesh->triangle_count && st == CW_OK; c++) {
@@ -178,13 +132,12 @@ static cw_status measure_stand(const cw_mesh *mesh, const cw_print_desc *limits,
         if (taken[v] || (double)p[2] - bottom >= limits->layer_mm)
             continue;
         taken[v] = 1;
-        points[count++] = (plan_point){(double)p[0], (double)p[1]};
+        points[count++] = (cwi_plan_point){(double)p[0], (double)p[1]};
     }
     if (count) {
-        qsort(points, count, sizeof *points, compare_points);
-        corners = find_outline(points, count, hull);
-        facts->margin_mm =
-            find_margin(hull, corners, &(plan_point){facts->center[0], facts->center[1]});
+        corners = cwi_find_outline(points, count, hull);
+        facts->margin_mm = cwi_outline_margin(
+            hull, corners, &(cwi_plan_point){facts->center[0], facts->center[1]});
         const double high = facts->center[2] - bottom;
         facts->tip_deg =
             facts->margin_mm > 0 && high > 0 ? atan2(facts->margin_mm, high) * 180 / CWI_PI : 0;
@@ -306,7 +259,7 @@ cw_status cw_print_measure(const cw_mesh *mesh, const cw_print_desc *desc,
     cw_mesh copy = {0};
     uint32_t *map = NULL;
     *facts = (cw_print_facts){.wall_mm = INFINITY, .gap_mm = INFINITY, .fits = true};
-    cw_status st = resolve_desc(desc, &limits, err);
+    cw_status st = cwi_print_limits(desc, &limits, err);
     if (st == CW_OK)
         st = cwi_mesh_check_size(mesh, "measured", err);
     if (st != CW_OK)

@@ -268,6 +268,27 @@ static void judge_width(bench *b, const char *name, const char *one, double min_
         say_finding(v, "no %s is below %g mm", one, limit);
 }
 
+/* Tells what another side down would change. */
+static void judge_orientation(bench *b)
+{
+    const cw_orient_facts *o = b->f->orient;
+    if (!o)
+        return;
+    const double saved = o->before.overhang_mm2 - o->after.overhang_mm2;
+    cw_verdict *v =
+        add_verdict(b, "orientation", o->is_kept ? CW_GRADE_OK : CW_GRADE_NOTE, saved);
+    if (o->is_kept) {
+        say_finding(v, "none of %zu poses prints with less support", o->poses);
+        return;
+    }
+    say_finding(
+        v,
+        "%.3g %.3g %.3g up: overhangs %.4g mm2, height %.4g mm (now %.4g), tips over at %.3g "
+        "degrees (now %.3g); cw_orient_print() turns it",
+        o->after.up[0], o->after.up[1], o->after.up[2], o->after.overhang_mm2,
+        o->after.height_mm, o->before.height_mm, o->after.tip_deg, o->before.tip_deg);
+}
+
 static void judge_support(bench *b)
 {
     const cw_print_facts *p = b->f->print;
@@ -275,6 +296,7 @@ static void judge_support(bench *b)
     say_finding(
         v, "%.4g mm2 (%.2g %%) of the surface leans more than %g degrees from the vertical",
         p->overhang_mm2, 100 * p->overhang_mm2 / p->area_mm2, p->limits.overhang_deg);
+    judge_orientation(b);
     v = add_verdict(b, "islands", p->islands ? CW_GRADE_WARN : CW_GRADE_OK, (double)p->islands);
     if (!p->islands) {
         say_finding(v, "nothing begins in the air");

@@ -20,6 +20,20 @@ class Checks(Case):
         flipped = cw.Mesh.from_arrays(mesh.vertices, mesh.triangles[:, ::-1].copy())
         self.assertEqual(cw.check(flipped).quality["inside_out"], 1)
 
+    def test_prints_are_turned(self):
+        corners = np.array([[x, y, z] for x in (0, 10) for y in (0, 20) for z in (0, 40)], "f4")
+        faces = [[0, 1, 3], [0, 3, 2], [4, 6, 7], [4, 7, 5], [0, 4, 5], [0, 5, 1], [2, 3, 7], [2, 7, 6],
+                 [0, 2, 6], [0, 6, 4], [1, 5, 7], [1, 7, 3]]  # fmt: skip
+        found = cw.orient_print(cw.Mesh.from_arrays(corners, np.array(faces, "u4")))
+        self.assertTrue(found.stable and not found.kept)
+        self.assertAlmostEqual(found.before.height, 40, 4)
+        self.assertAlmostEqual(found.after.height, 10, 4)
+        self.assertAlmostEqual(found.after.hull_area, 800, 2)
+        low, high = found.mesh.bounds
+        self.assertAlmostEqual(high[2] - low[2], 10, 4)
+        again = cw.orient_print(found.mesh, overhang=30)
+        self.assertTrue(again.kept and again.mesh is found.mesh)
+
     def test_prints_are_measured(self):
         mesh = cw.extract(make_ball(), 0)
         found = cw.check(mesh, profile="print", wall=100, plate=(5, 50, 50))

@@ -2,7 +2,9 @@
 
 import array as buffers
 import gc
+import tempfile
 import weakref
+from pathlib import Path
 
 import cubewright as cw
 import numpy as np
@@ -313,6 +315,68 @@ class Mistakes(Case):
             cw.Volume(make_ball(), slope=0)
         with self.assertRaises(ValueError):
             cw.Volume(make_ball(), coordinates=[np.arange(3.0)] * 3)
+
+
+class Voxelizing(Case):
+    def test_labels_of_an_extracted_surface_are_the_voxels_above_the_level(self):
+        volume = cw.Volume(make_ball(), spacing=(1, 2, 0.5), origin=(5, 6, 7))
+        back = cw.extract(volume, 0).voxelize(like=volume)
+        level = np.asarray(volume.array) >= 0
+        inside = back.volume.array > 0
+        self.assertTrue(np.array_equal(inside, level) or np.array_equal(inside, ~level))
+        self.assertEqual(back.volume.array.dtype, np.uint8)
+        self.assertEqual(back.parts[0].voxels, int(inside.sum()))
+        np.testing.assert_array_equal(back.volume.affine, volume.affine)
+
+    def test_fractions_add_up_to_the_volume(self):
+        mesh = cw.extract(make_ball(), 0)
+        made = cw.voxelize(mesh, spacing=(1.7, 2, 2.3), partial=True)
+        self.assertEqual(made.volume.array.dtype, np.float32)
+        sum = float(made.volume.array.sum(dtype="f8")) * 1.7 * 2 * 2.3
+        self.assertAlmostEqual(sum / made.parts[0].volume, 1, 5)
+        self.assertAlmostEqual(made.parts[0].filled / made.parts[0].volume, 1, 6)
+
+    def test_several_meshes_get_their_labels_and_names(self):
+        ball = cw.extract(make_ball(), 0)
+        other = cw.transform(ball, [[1, 0, 0, 100], [0, 1, 0, 0], [0, 0, 1, 0]])
+        made = cw.voxelize([ball, other], spacing=2, labels=[7, 300])
+        self.assertEqual(set(np.unique(made.volume.array)), {0, 7, 300})
+        self.assertEqual([p.label for p in made.parts], [7, 300])
+        made.volume.labels = [cw.Label(7, 0, "left", (255, 0, 0, 255)), cw.Label(300, 0, "right", None)]
+        with tempfile.TemporaryDirectory() as folder:
+            for name in ("a.nii.gz", "a.nrrd"):
+                cw.write(Path(folder) / name, made.volume)
+                back = cw.read_volume(Path(folder) / name)
+                self.assertEqual([label.name for label in back.labels], ["left", "right"])
+                np.testing.assert_array_equal(back.array, made.volume.array)
+
+    def test_values_inside_of_a_mesh(self):
+        array = np.zeros((20, 20, 20), "f4")
+        array[:, :, 10:] = 5
+        volume = cw.Volume(array, spacing=2)
+        corners = np.array([[x, y, z] for x in (9, 29) for y in (9, 29) for z in (9, 29)], "f4")
+        faces = [[0, 1, 3], [0, 3, 2], [4, 6, 7], [4, 7, 5], [0, 4, 5], [0, 5, 1], [2, 3, 7], [2, 7, 6],
+                 [0, 2, 6], [0, 6, 4], [1, 5, 7], [1, 7, 3]]  # fmt: skip
+        box = cw.Mesh.from_arrays(corners, np.array(faces, "u4"))
+        found = cw.measure_within(volume, box)
+        self.assertAlmostEqual(found.volume, 8000, 1)
+        self.assertAlmostEqual(found.mean, 2.5, 5)
+        self.assertAlmostEqual(found.sd, 2.5, 5)
+        self.assertEqual((found.min, found.max, found.mesh.outside_area), (0, 5, 0))
+        with self.assertRaisesRegex(cw.Error, "outside"):
+            cw.measure_within(cw.Volume(array, origin=(500, 0, 0)), box)
+
+    def test_what_makes_no_sense_is_refused(self):
+        ball = cw.extract(make_ball(), 0)
+        for arguments, words in (({}, "grid is required"), ({"spacing": 1, "like": cw.Volume(make_ball())}, "not both")):
+            with self.assertRaisesRegex(cw.Error, words):
+                ball.voxelize(**arguments)
+        with self.assertRaisesRegex(ValueError, "labels has 2"):
+            ball.voxelize(spacing=1, labels=[1, 2])
+        open_mesh = cw.Mesh.from_arrays(ball.vertices, ball.triangles[1:])
+        with self.assertRaises(cw.Error) as caught:
+            open_mesh.voxelize(spacing=1)
+        self.assertEqual(caught.exception.status, cw.Status.CHECK)
 
 
 if __name__ == "__main__":

@@ -242,13 +242,48 @@ static void failures_leave_an_empty_table(void **state)
     assert_int_equal(cw_memory_used(), before);
 }
 
+/* Names that need escapes come back, plain and gzipped, and the voxels with them. */
+static void names_are_written(void **state)
+{
+    (void)state;
+    static const char *const files[] = {"w.nii", "w.nii.gz"};
+    static const uint8_t voxels[4] = {0, 7, 300 % 256, 7};
+    cw_label_table table = {0}, back = {0};
+    cw_error err = {0};
+    char odd[] = "<left> & \"right\"", plain[] = "liver";
+    const cw_label labels[2] = {
+        {.value = 7, .name = plain, .color = {255, 128, 0, 255}, .has_color = true},
+        {.value = 44, .name = odd}};
+    for (int n = 0; n < 2; n++)
+        assert_ok(cw_label_table_add(&table, &labels[n], &err), err);
+    const cw_volume v = {.data = voxels, .dim = {2, 2, 1}, .known = CW_KNOWN_LABELS};
+    for (int n = 0; n < 2; n++) {
+        cw_volume read;
+        assert_ok(
+            cw_volume_write(test_path(files[n]), &v, &(cw_write_desc){.labels = &table}, &err),
+            err);
+        assert_ok(cw_volume_read(test_path(files[n]), &(cw_read_desc){.labels = &back}, &read,
+                                 NULL, &err),
+                  err);
+        assert_int_equal(back.count, 2);
+        assert_string_equal(back.labels[0].name, plain);
+        assert_string_equal(back.labels[1].name, odd);
+        assert_memory_equal(back.labels[0].color, labels[0].color, 4);
+        assert_memory_equal(read.data, voxels, 4);
+        assert_true(read.known & CW_KNOWN_LABELS);
+        cw_volume_free(&read);
+    }
+    cw_label_table_free(&back);
+    cw_label_table_free(&table);
+}
+
 int main(void)
 {
 #define TEST(name) cmocka_unit_test_setup_teardown(name, test_folder_make, test_folder_remove)
     const struct CMUnitTest tests[] = {
         TEST(extensions_hold_names),         TEST(the_other_byte_order_is_read),
         TEST(a_pair_has_them_in_its_header), TEST(damaged_extensions_do_no_harm),
-        TEST(failures_leave_an_empty_table),
+        TEST(failures_leave_an_empty_table), TEST(names_are_written),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

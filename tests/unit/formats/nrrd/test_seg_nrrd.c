@@ -191,6 +191,39 @@ static void memory_may_run_out_anywhere(void **state)
     assert_int_equal(cw_memory_used(), before);
 }
 
+/* Names that need escapes, and colours, come back. */
+static void segments_are_written(void **state)
+{
+    (void)state;
+    static const uint8_t map[4] = {0, 7, 44, 7};
+    cw_label_table table = {0}, back = {0};
+    cw_error err = {0};
+    cw_volume read;
+    char odd[] = "left\\right := n", plain[] = "liver";
+    const cw_label labels[2] = {
+        {.value = 7, .name = plain, .color = {255, 128, 3, 255}, .has_color = true},
+        {.value = 44, .name = odd}};
+    for (int n = 0; n < 2; n++)
+        assert_ok(cw_label_table_add(&table, &labels[n], &err), err);
+    const cw_volume v = {.data = map, .dim = {2, 2, 1}, .known = CW_KNOWN_LABELS};
+    assert_ok(
+        cw_volume_write(test_path("w.seg.nrrd"), &v, &(cw_write_desc){.labels = &table}, &err),
+        err);
+    assert_ok(cw_volume_read(test_path("w.seg.nrrd"), &(cw_read_desc){.labels = &back}, &read,
+                             NULL, &err),
+              err);
+    assert_int_equal(back.count, 2);
+    assert_string_equal(back.labels[0].name, plain);
+    assert_string_equal(back.labels[1].name, odd);
+    assert_memory_equal(back.labels[0].color, labels[0].color, 4);
+    assert_false(back.labels[1].has_color);
+    assert_memory_equal(read.data, map, 4);
+    assert_true(read.known & CW_KNOWN_LABELS);
+    cw_volume_free(&read);
+    cw_label_table_free(&back);
+    cw_label_table_free(&table);
+}
+
 int main(void)
 {
 #define TEST(name) cmocka_unit_test_setup_teardown(name, test_folder_make, test_folder_remove)
@@ -201,6 +234,7 @@ int main(void)
         TEST(too_many_layers_have_no_names),
         TEST(damaged_keys_are_named),
         TEST(memory_may_run_out_anywhere),
+        TEST(segments_are_written),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

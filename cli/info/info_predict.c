@@ -1,7 +1,7 @@
 /* Counts the surfaces that `extract` would make, and predicts the size of their files, memory and
  * time. */
 #define _GNU_SOURCE /* PATH_MAX */
-#include "cli/commands/info_predict.h"
+#include "cli/info/info_predict.h"
 
 #include "cli/framework/console.h"
 #include "cli/framework/name_template.h"

@@ -1,6 +1,6 @@
 /* The levels of an image in several sizes, as the command info tells them. */
-#ifndef CLI_COMMANDS_INFO_SCALES_H
-#define CLI_COMMANDS_INFO_SCALES_H
+#ifndef CLI_INFO_INFO_SCALES_H
+#define CLI_INFO_INFO_SCALES_H
 
 #include "cli/framework/json_writer.h"
 

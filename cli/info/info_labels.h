@@ -1,6 +1,6 @@
 /* The labels of a label map, as the command info tells them. */
-#ifndef CLI_COMMANDS_INFO_LABELS_H
-#define CLI_COMMANDS_INFO_LABELS_H
+#ifndef CLI_INFO_INFO_LABELS_H
+#define CLI_INFO_INFO_LABELS_H
 
 #include "cli/framework/json_writer.h"
 #include "cli/inputs/label_names.h"

@@ -1,14 +1,15 @@
 /* The command info: prints the facts of a volume or a series, such as its grid, range of
  * values and suggested isovalues. */
-#include "cli/commands/command_rows.h"
-#include "cli/commands/info_labels.h"
-#include "cli/commands/info_predict.h"
-#include "cli/commands/info_scales.h"
+#include "cli/info/cmd_info.h"
 #include "cli/framework/batch.h"
 #include "cli/framework/console.h"
 #include "cli/framework/field_names.h"
 #include "cli/framework/quantity.h"
 #include "cli/framework/run_config.h"
+#include "cli/info/info_labels.h"
+#include "cli/info/info_predict.h"
+#include "cli/info/info_scales.h"
+#include "cli/info/info_within.h"
 #include "cli/inputs/level_choice.h"
 #include "cli/inputs/time_series.h"
 #include "cli/inputs/volume_input.h"
@@ -29,7 +30,7 @@ typedef struct info_args {
     cli_input input;
     cli_numbers iso;
     size_t histogram;
-    const char *names;
+    const char *names, *within;
     bool json, levels, deep;
 } info_args;
 
@@ -42,6 +43,9 @@ static const cli_option options[] = {
     {"names", 0, CLI_TEXT, "FILE",
      "Table of the labels' names and colours (in the volume, else in a file beside it)",
      offsetof(info_args, names), CLI_VALUES_FILE},
+    {"within", 0, CLI_TEXT, "MESH",
+     "Measure the values inside of a closed mesh, by its parts; reads all voxels (none)",
+     offsetof(info_args, within), CLI_VALUES_MESH},
     {"levels", 0, CLI_FLAG, NULL,
      "Predict the number of triangles at each suggested isovalue, and the size of an STL file (off)",
      offsetof(info_args, levels)},
@@ -73,6 +77,7 @@ typedef struct facts {
     int level_count;
     cli_label_facts labels;
     cli_scales scales;
+    cli_within within;
     cli_predictions predictions;
     double read_seconds; /* of the volume, or of the part that was read */
     cw_array *arrays;    /* of a file that has several; else NULL */
@@ -234,7 +239,7 @@ static cw_status find_facts(const info_args *args, facts *f, cw_error *err)
     const size_t program_bytes = cli_peak_bytes();
     const double start = cli_seconds();
     cli_input input = args->input;
-    input.sample = !args->deep && !args->levels;
+    input.sample = !args->deep && !args->levels && !args->within;
     cw_status st = cli_read_volume(args->common.inputs[0], &input, false, &f->volume, err);
     f->read_seconds = cli_seconds() - start;
     if (st != CW_OK)
@@ -260,6 +265,10 @@ static cw_status find_facts(const info_args *args, facts *f, cw_error *err)
     cli_end_step("count", &step);
     if (st != CW_OK)
         return cwi_fail_in(err, st, f->volume.path);
+    if (args->within)
+        st = cli_find_within(args->within, &args->input, &f->volume, &f->within, err);
+    if (st != CW_OK)
+        return st;
     st = predict_extract(args, program_bytes, f, err);
     cli_end_step("predict", &step);
     return st;
@@ -458,6 +467,7 @@ static void print_json(const facts *f, bool predicted)
     json_arrays(&j, f);
     cli_json_scales(&j, &f->scales);
     cli_json_label_facts(&j, &f->labels);
+    cli_json_within(&j, &f->within);
     cli_json_numbers(&j, "range", (const double[2]){r->min, r->max}, 2);
     if (is_sampled(f))
         cli_json_numbers(
@@ -638,10 +648,11 @@ static cw_status print_files(const info_args *args, char *const *files, size_t c
 {
     cli_json j = {.out = stdout};
     cw_error finding = {0};
-    if (args->histogram || args->levels || args->iso.count)
-        return cwi_fail(err, CW_ERR_ARGUMENT,
-                        "--histogram, --levels and --iso need a single file; there are %zu",
-                        count);
+    if (args->histogram || args->levels || args->iso.count || args->within)
+        return cwi_fail(
+            err, CW_ERR_ARGUMENT,
+            "--histogram, --levels, --within and --iso need a single file; there are %zu",
+            count);
     open_list(args, count, &j);
     cw_status st = list_files(args, files, count, &j, &finding, err);
     close_list(args, st == CW_OK ? &finding : err, &j);
@@ -720,6 +731,7 @@ static cw_status run_info(void *p, cw_error *err)
         print_geometry(&f);
         print_values(args, &f);
         cli_print_label_facts(&f.labels, is_sampled(&f));
+        cli_print_within(&f.within);
         print_levels(&f, args->levels);
         cli_print_predictions(&f.predictions);
     }
@@ -727,6 +739,7 @@ static cw_status run_info(void *p, cw_error *err)
         st = cli_expect_surfaces(&f.volume, &f.predictions, err);
     cw_statistics_free(&f.range);
     cli_free_label_facts(&f.labels);
+    cli_free_within(&f.within);
     cw_levels_free(f.scales.levels);
     cw_arrays_free(f.arrays);
     free(f.ranges);

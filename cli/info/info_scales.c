@@ -1,5 +1,5 @@
 /* Finds and prints the levels of an image in several sizes. */
-#include "cli/commands/info_scales.h"
+#include "cli/info/info_scales.h"
 
 #include <stdio.h>
 

@@ -1,5 +1,5 @@
 /* Counts the labels of a label map, finds their names, and prints them. */
-#include "cli/commands/info_labels.h"
+#include "cli/info/info_labels.h"
 
 #include "cli/framework/quantity.h"
 #include "core/base/memory.h"

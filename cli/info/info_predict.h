@@ -1,7 +1,7 @@
 /* Predictions of the command info: what `extract` makes of a volume at an isovalue, and what that
  * takes. */
-#ifndef CLI_COMMANDS_INFO_PREDICT_H
-#define CLI_COMMANDS_INFO_PREDICT_H
+#ifndef CLI_INFO_INFO_PREDICT_H
+#define CLI_INFO_INFO_PREDICT_H
 
 #include "cli/inputs/volume_input.h"
 
