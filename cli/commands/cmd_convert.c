@@ -1,8 +1,8 @@
 /* The command convert: writes a mesh in another format, merged or split into its parts. */
+#include "cli/assets/orient_print.h"
 #include "cli/commands/command_rows.h"
 #include "cli/commands/convert_asset.h"
 #include "cli/commands/mesh_command.h"
-#include "cli/commands/orient_print.h"
 #include "cli/framework/console.h"
 #include "cli/framework/quantity.h"
 #include "cli/inputs/cut_options.h"
@@ -50,9 +50,7 @@ static const cli_option options[] = {
      "Write a file for each part; of a mesh that is one, for each component (off)",
      offsetof(convert_args, split)},
     CLI_MESH_ORIENT,
-    {"orient-print", 0, CLI_NUMBER, "auto/DEG",
-     "Turn to the pose that prints with the least support: overhangs beyond 45 degrees, or DEG (off)",
-     offsetof(convert_args, orient_print)},
+    CLI_ORIENT_PRINT_OPTION(offsetof(convert_args, orient_print)),
     {"cut-plane", 0, CLI_PLANE, "PLANE",
      "Cut by a plane, keep what is above, and close it flat: z=5mm, z=10% of the box, -z=5mm keeps "
      "what is below, or x,y,z:nx,ny,nz (off)",
@@ -114,12 +112,8 @@ static cw_status check_values(cli_mesh_run *r, cw_error *err)
                         "--profile %s: levels and maps in one file are for .glb and .gltf",
                         asset_of(r)->name);
     cw_status st = cli_check_crease(&args_of(r)->crease, err);
-    const cli_number *orient = &args_of(r)->orient_print;
-    if (st == CW_OK && orient->given && !orient->is_word &&
-        !(orient->value > 0 && orient->value < 90))
-        st = cwi_fail(err, CW_ERR_ARGUMENT,
-                      "--orient-print %g: expected auto, or degrees above 0 and below 90",
-                      orient->value);
+    if (st == CW_OK)
+        st = cli_check_orient(&args_of(r)->orient_print, err);
     return st == CW_OK ? cli_check_placing(&args_of(r)->placing, err) : st;
 }
 

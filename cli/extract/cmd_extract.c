@@ -118,6 +118,7 @@ static const cli_option options[] = {
      "texture coordinates and a normal map, within the budget (none)",
      offsetof(cli_extract_args, profile)},
     CLI_PRINTER_OPTIONS(cli_extract_args),
+    CLI_ORIENT_PRINT_OPTION(offsetof(cli_extract_args, orient_print)),
     CLI_COLOR_OPTIONS(cli_extract_args),
     CLI_HEADED("Simplify while extracting"),
     {"simplify", 0, CLI_REDUCTION, "L|N",
@@ -250,6 +251,8 @@ static const cli_rule rules[] = {
      "labels open cull animate steps pvd snap part parts manifest"},
     {"uv", CLI_EXCLUDES, "animate"},
     {"crease-angle", CLI_EXCLUDES, "normals=none"},
+    {"orient-print", CLI_EXCLUDES,
+     "labels lod animate part parts manifest profile=game profile=web profile=mobile"},
     {"prove-crop", CLI_NEEDS, "crop"},
     {"prove-crop", CLI_EXCLUDES,
      "preview coarsen snap resample denoise remove-table mask mask-open mask-close"},
@@ -337,7 +340,7 @@ static cw_status make_surface(cli_extract_run *s, const cli_moment *moment, size
     if (st == CW_OK)
         st = cli_extract_prove_crop(s, moment, made, err);
     if (st == CW_OK)
-        st = cli_move_to_pivot(s->args->pivot, &mesh, 1, made->pivot, err);
+        st = cli_extract_place(s, made, &mesh, err);
     const cw_part part = {.mesh = &mesh, .textures = cli_find_textures(&s->output.maps)};
     if (st == CW_OK)
         st = s->args->animate ? cli_deliver_step(&s->output.report, &how, &mesh,

@@ -158,6 +158,8 @@ cw_status cli_extract_check_args(cli_extract_run *s, cw_error *err)
     if (st == CW_OK)
         st = cli_check_crease(&args->crease, err);
     if (st == CW_OK)
+        st = cli_check_orient(&args->orient_print, err);
+    if (st == CW_OK)
         st = check_lod(args, err);
     if (st == CW_OK)
         st = cli_read_views(&args->pixel, s->plan.views, &s->plan.view_count, err);

@@ -31,7 +31,7 @@ typedef struct cli_extract_args {
     size_t largest; /* components to keep; 0: all */
     bool fill_voids;
     cli_length handles;
-    cli_number crease;
+    cli_number crease, orient_print;
     cli_smoothing smooth;
     cli_plane cut;
     cli_length max_move;
@@ -200,6 +200,10 @@ CW_NODISCARD cw_status cli_extract_make(cli_extract_run *s, const cli_moment *mo
  * simplified or smoothed one from the field if the voxels are in memory. */
 CW_NODISCARD cw_status cli_extract_judge(cli_extract_run *s, cli_made *made,
                                          const cw_mesh *mesh, cw_error *err);
+
+/* Turns the finished surface for printing, if that was asked for, and then moves it to its pivot. */
+CW_NODISCARD cw_status cli_extract_place(cli_extract_run *s, cli_made *made, cw_mesh *mesh,
+                                         cw_error *err);
 
 /* Judges the surface of --profile print once it is written. */
 CW_NODISCARD cw_status cli_extract_judge_print(cli_extract_run *s, cli_made *made,

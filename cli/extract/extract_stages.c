@@ -10,7 +10,7 @@
 
 /* Options that are no stages, and need the whole surface or all voxels. */
 static const char UNSTREAMED[] =
-    "max-error profile=print snap animate prove-crop pivot component=mag";
+    "max-error profile=print snap animate prove-crop pivot orient-print component=mag";
 
 bool cli_extract_is_simplified(const cli_extract_args *args)
 {

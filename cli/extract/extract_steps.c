@@ -5,6 +5,7 @@
 #include "cli/framework/console.h"
 #include "cli/inputs/cut_options.h"
 #include "cli/inputs/extract_surface.h"
+#include "cli/inputs/place_options.h"
 #include "cli/results/detail_levels.h"
 #include "cli/results/mesh_comparison.h"
 #include "cli/results/stage_facts.h"
@@ -388,4 +389,16 @@ cw_status cli_extract_prove_crop(cli_extract_run *s, const cli_moment *moment, c
             cli_bytes((double)p->bytes), p->seconds, cli_bytes((double)p->whole_bytes),
             p->whole_seconds);
     return CW_OK;
+}
+
+cw_status cli_extract_place(cli_extract_run *s, cli_made *made, cw_mesh *mesh, cw_error *err)
+{
+    const cli_number *angle = &s->args->orient_print;
+    cli_mesh turned = {.path = s->input.volume.path, .mesh = *mesh};
+    cw_status st = CW_OK;
+    if (angle->given)
+        st = cli_orient_for_print(angle, (int)s->args->input.threads, &turned, &made->orient,
+                                  err);
+    *mesh = turned.mesh;
+    return st == CW_OK ? cli_move_to_pivot(s->args->pivot, mesh, 1, made->pivot, err) : st;
 }

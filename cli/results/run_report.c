@@ -265,6 +265,7 @@ static void put_facts(cli_json *j, const cli_made *m)
         cli_json_number(j, "switch_distance_m", m->switch_m);
     if (m->pivot[0] != 0 || m->pivot[1] != 0 || m->pivot[2] != 0)
         cli_json_numbers(j, "moved_to_pivot_mm", m->pivot, 3);
+    cli_json_orient(j, &m->orient);
     if (m->compared.has_texture)
         put_texture(j, &m->compared.texture);
     cli_json_stages(j, &m->facts, m->least_mm3);

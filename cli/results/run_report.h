@@ -3,6 +3,7 @@
 #ifndef CLI_RESULTS_RUN_REPORT_H
 #define CLI_RESULTS_RUN_REPORT_H
 
+#include "cli/assets/orient_print.h"
 #include "cli/inputs/time_series.h"
 #include "cli/results/printability.h"
 
@@ -82,6 +83,7 @@ typedef struct cli_made {
     double origin[3];         /* when it is local: the places in the file are relative to it */
     cli_comparison compared;
     double pivot[3];         /* mm by which it was moved to its pivot */
+    cw_orient_facts orient;  /* of --orient-print */
     double switch_m;         /* of a level: distance from which on its error is below a pixel */
     double least_mm3;        /* what components had to enclose */
     cw_pipeline_facts facts; /* of the stages that ran */

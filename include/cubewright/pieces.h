@@ -72,19 +72,19 @@ typedef struct cw_peg {
 
 /* The pieces of a solid. A zeroed struct is valid and empty. */
 typedef struct cw_pieces {
-    uint32_t version; /* 0: the first version of this struct */
-    size_t count;
-    cw_piece *pieces; /* those of the whole first, then dowels */
-    size_t section_count;
-    cw_piece_section *sections;
-    size_t peg_count;
-    cw_peg *pegs;
-    cw_pieces_desc settings; /* with the defaults that were used; progress is none */
-    double whole_mm3;        /* what the solid enclosed, overlaps once */
-    double pieces_mm3;       /* the sum of all, dowels included */
-    double gaps_mm3;         /* clearance around pegs: what the holes have more than the pegs */
-    size_t shortened;        /* pegs that are shorter than requested */
-    size_t missing;          /* pegs that had no room */
+    uint32_t version;           /* 0: the first version of this struct */
+    size_t count;               /* number of pieces */
+    cw_piece *pieces;           /* those of the whole first, then dowels */
+    size_t section_count;       /* number of sections */
+    cw_piece_section *sections; /* where two pieces meet */
+    size_t peg_count;           /* number of pegs or dowels */
+    cw_peg *pegs;               /* those that had room */
+    cw_pieces_desc settings;    /* with the defaults that were used; progress is none */
+    double whole_mm3;           /* what the solid enclosed, overlaps once */
+    double pieces_mm3;          /* the sum of all, dowels included */
+    double gaps_mm3;  /* clearance around pegs: what the holes have more than the pegs */
+    size_t shortened; /* pegs that are shorter than requested */
+    size_t missing;   /* pegs that had no room */
 } cw_pieces;
 
 /* Cuts a solid by planes and keeps all pieces.

@@ -42,3 +42,15 @@ for degrees in 0 90 half; do
     cubewright convert table.obj --orient-print $degrees -o out.obj -q
     echo "exit $?"
 done
+
+# The surface of a volume is turned as it is extracted, as it is from its file.
+cubewright make torus -o torus.nrrd --dims 24 -q
+cubewright extract torus.nrrd --iso 0 --crop 0:11,0:23,0:23 -o half.stl -q
+cubewright convert half.stl --orient-print auto -o after.stl -q
+cubewright extract torus.nrrd --iso 0 --crop 0:11,0:23,0:23 --orient-print auto -o at-once.stl --json j.json
+grep -c '"orient_print"' j.json
+cubewright check at-once.stl --reference after.stl | grep -c 'at most 0 mm from\|at most [0-9.]*e-0[5-9] mm from'
+cubewright extract torus.nrrd --iso 0 --orient-print auto --lod 300,100 -o no.glb
+echo "exit $?"
+cubewright extract torus.nrrd --iso 0 --orient-print 95 -o no.stl
+echo "exit $?"

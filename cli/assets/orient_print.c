@@ -1,5 +1,5 @@
 /* Finds how a mesh prints with the least support, turns it, and tells of both ways to stand. */
-#include "cli/commands/orient_print.h"
+#include "cli/assets/orient_print.h"
 
 #include "cli/framework/console.h"
 #include "core/base/memory.h"
@@ -7,6 +7,15 @@
 #include "core/texture/gather_meshes.h"
 
 #include <stdlib.h>
+
+cw_status cli_check_orient(const cli_number *angle, cw_error *err)
+{
+    if (!angle->given || angle->is_word || (angle->value > 0 && angle->value < 90))
+        return CW_OK;
+    return cwi_fail(err, CW_ERR_ARGUMENT,
+                    "--orient-print %g: expected auto, or degrees above 0 and below 90",
+                    angle->value);
+}
 
 static cw_mesh *find_part(cli_mesh *m, size_t n)
 {
