@@ -36,10 +36,10 @@ typedef struct cw_pieces_desc {
 
 /* A piece, or a dowel. */
 typedef struct cw_piece {
-    cw_mesh mesh;  /* closed, with CW_SECTION_ATTRIBUTE if planes cut it */
-    char name[32]; /* piece-1, piece-2 and so on; then dowel-1 ... */
-    bool is_dowel; /* else it is material of the whole */
-    double volume_mm3;
+    cw_mesh mesh;       /* closed, with CW_SECTION_ATTRIBUTE if planes cut it */
+    char name[32];      /* piece-1, piece-2 and so on; then dowel-1 ... */
+    bool is_dowel;      /* else it is material of the whole */
+    double volume_mm3;  /* that it encloses */
     size_t pegs, holes; /* of this piece */
     double
         placed[12]; /* 3 x 4, row by row: the map from its place in the whole to the one that it
@@ -50,12 +50,12 @@ typedef struct cw_piece {
 
 /* The section between two neighbouring pieces. */
 typedef struct cw_piece_section {
-    size_t plane; /* from 0 */
-    size_t below,
-        above; /* numbers of the pieces, from 0; the plane's normal points to `above` */
-    double area_mm2;
-    size_t regions; /* that are not connected */
-    size_t pegs;    /* that were placed, of regions x pegs that were requested */
+    size_t plane;    /* from 0 */
+    size_t below;    /* number of the piece on the other side */
+    size_t above;    /* number of the pieces, from 0; the plane's normal points to `above` */
+    double area_mm2; /* of all regions */
+    size_t regions;  /* that are not connected */
+    size_t pegs;     /* that were placed, of regions x pegs that were requested */
     double
         widest_mm; /* the largest diameter of a peg that its regions have room for; 0 or less:
                          none, as the clearance takes all of it */
@@ -66,8 +66,8 @@ typedef struct cw_peg {
     size_t section;      /* from 0 */
     double center[3];    /* in the section, world, mm */
     double direction[3]; /* of length 1, from the piece below to the one above */
-    double diameter_mm;
-    double length_mm; /* may be shorter than requested, where the material ends */
+    double diameter_mm;  /* of the peg; its hole is wider by twice the clearance */
+    double length_mm;    /* may be shorter than requested, where the material ends */
 } cw_peg;
 
 /* The pieces of a solid. A zeroed struct is valid and empty. */
@@ -187,11 +187,11 @@ typedef struct cw_assembled {
 /* Puts pieces together again, each at its place in the whole, and measures them beside the whole: along lines
  * in three directions, and from the surface of the whole.
  *
- * pieces   borrowed
- * whole    borrowed; the mesh that was cut
- * threads  0: one per processor
- * progress default: none; may be NULL
- * out      zeroed before; filled on success
+ * pieces    borrowed
+ * whole     borrowed; the mesh that was cut
+ * threads   0: one per processor
+ * progress  NULL: none
+ * out       zeroed before; filled on success
  * Returns  as cw_mesh_boolean() and cw_distance_to_mesh()
  * Cost     in proportion to the triangles, and to the lines that they meet */
 CW_NODISCARD CW_API cw_status cw_pieces_assemble(const cw_pieces *pieces, const cw_mesh *whole,
