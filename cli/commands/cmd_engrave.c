@@ -7,6 +7,7 @@
 #include "core/base/memory.h"
 #include "core/base/status.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 
 typedef struct engrave_args {
@@ -92,7 +93,8 @@ static void put_facts(cli_json *j, const cli_mesh_run *r)
     cli_json_open(j, "engraved", '[');
     for (size_t n = 0; n < s->count; n++) {
         cli_json_open(j, NULL, '{');
-        cli_json_engraved(j, s->pieces[n].text, &s->pieces[n].facts);
+        cli_json_text(j, "text", s->pieces[n].text);
+        cli_json_engraved(j, &s->pieces[n].facts);
         cli_json_close(j, '}');
     }
     cli_json_close(j, ']');
@@ -102,16 +104,10 @@ static cw_status report_facts(cli_mesh_run *r, cw_error *err)
 {
     const engrave_state *s = r->state;
     (void)err;
-    for (size_t n = 0; n < s->count; n++)
-        cli_tell_engraved(r->mesh.path, &s->pieces[n].facts);
-    if (s->count == 1)
-        cli_print_engraved(s->pieces[0].text, args_of(r)->emboss, &s->pieces[0].facts, r->found,
-                           sizeof r->found);
-    for (size_t n = 0; n < s->count && s->count > 1; n++) {
-        char found[320];
-        cli_print_engraved(s->pieces[n].text, args_of(r)->emboss, &s->pieces[n].facts, found,
-                           sizeof found);
-        cli_say("%s: part %zu%s", r->mesh.path, n + 1, found);
+    for (size_t n = 0; n < s->count; n++) {
+        char name[128];
+        snprintf(name, sizeof name, "'%.100s'", s->pieces[n].text);
+        cli_tell_engraved(name, &s->pieces[n].facts);
     }
     return CW_OK;
 }

@@ -36,18 +36,18 @@ cw_status cli_fill_engraved_text(const char *text, const char *input, const char
     return st;
 }
 
-size_t cli_print_engraved(const char *text, bool is_raised, const cw_engrave_facts *f,
-                          char *out, size_t size)
+/* Returns a number without the digits that rounding left: a thousandth of a unit is nothing. */
+static double round_off(double x, double unit)
 {
-    const int length = snprintf(
-        out, size, "; '%.60s' %.3g mm high, %.3g mm %s, at %.4g, %.4g, %.4g facing %.2g, %.2g, %.2g",
-        text, f->size_mm, f->depth_mm, is_raised ? "raised" : "deep", f->center[0], f->center[1],
-        f->center[2], f->normal[0] + 0.0, f->normal[1] + 0.0, f->normal[2] + 0.0);
-    return length < 0 ? 0 : (size_t)length < size ? (size_t)length : size - 1;
+    return fabs(x) < 1e-3 * unit ? 0 : x;
 }
 
 void cli_tell_engraved(const char *path, const cw_engrave_facts *f)
 {
+    cli_say("%s: letters %.3g mm high, %.3g mm deep, at %.4g, %.4g, %.4g, facing %.3g, %.3g, %.3g", path,
+            f->size_mm, f->depth_mm, round_off(f->center[0], f->size_mm),
+            round_off(f->center[1], f->size_mm), round_off(f->center[2], f->size_mm),
+            round_off(f->normal[0], 1), round_off(f->normal[1], 1), round_off(f->normal[2], 1));
     if (f->lean_deg > CURVED_DEG)
         cli_say("%s: the text follows the surface, which is up to %.3g mm off a plane and leans by up "
                 "to %.0f degrees",
@@ -57,9 +57,8 @@ void cli_tell_engraved(const char *path, const cw_engrave_facts *f)
                 f->stroke_mm, NOZZLE_MM, ceil(10 * NOZZLE_MM * f->size_mm / f->stroke_mm) / 10);
 }
 
-void cli_json_engraved(cli_json *j, const char *text, const cw_engrave_facts *f)
+void cli_json_engraved(cli_json *j, const cw_engrave_facts *f)
 {
-    cli_json_text(j, "text", text);
     cli_json_numbers(j, "center", f->center, 3);
     cli_json_numbers(j, "normal", f->normal, 3);
     cli_json_numbers(j, "right", f->right, 3);

@@ -16,15 +16,12 @@ CW_NODISCARD cw_status cli_fill_engraved_text(const char *text, const char *inpu
                                               const char *name, const cw_label *label,
                                               char **out, cw_error *err);
 
-/* Prints the facts for the line: "; 'L 4711' 5mm high, 0.6mm deep, at 0, 0, 10". Returns the length. */
-size_t cli_print_engraved(const char *text, bool is_raised, const cw_engrave_facts *facts,
-                          char *out, size_t size);
-
-/* Tells where the place is not flat, and strokes that are finer than printers make them.
- * path  of the mesh */
+/* Tells how large the text is and where, how far that is from flat, and strokes that are finer than printers make
+ * them.
+ * path  of the file, or the name of a part */
 void cli_tell_engraved(const char *path, const cw_engrave_facts *facts);
 
-/* Writes the members of an object with a text and its facts. */
-void cli_json_engraved(cli_json *j, const char *text, const cw_engrave_facts *facts);
+/* Writes the members of an object with the facts. */
+void cli_json_engraved(cli_json *j, const cw_engrave_facts *facts);
 
 #endif

@@ -19,6 +19,7 @@ from ._boolean import Combined, boolean
 from ._check import Check, Verdict, check, report
 from ._color import color_by
 from ._cut import Cut, cut
+from ._engrave import Engraved, engrave
 from ._errors import Error, Status
 from ._extract import Extractor, LabelSurfaces, Patch, Settings, extract, extract_labels, extract_levels
 from ._handles import Closed, close_handles
@@ -45,6 +46,7 @@ __all__ = [
     "Closed",
     "Combined",
     "Cut",
+    "Engraved",
     "Error",
     "Extractor",
     "Feature",
@@ -78,6 +80,7 @@ __all__ = [
     "crease_normals",
     "color_by",
     "cut",
+    "engrave",
     "extract",
     "extract_labels",
     "extract_levels",

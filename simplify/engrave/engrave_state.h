@@ -43,7 +43,7 @@ void cwi_free_region(cwi_region *region);
 typedef struct cwi_target {
     const cw_mesh *mesh;
     cwi_boxes tree;
-    double diagonal;
+    double middle[3], diagonal; /* of the box */
     float slack;
 } cwi_target;
 
@@ -72,10 +72,12 @@ void cwi_set_frame(cwi_text_place *place);
 bool cwi_find_height(const cwi_target *target, const cwi_text_place *place, double x, double y,
                      double reach, double *height, double *lean);
 
-/* Lists places that may hold text: middles of plane faces, then points of equal area.
+/* Lists places that may hold text: those before the middle of the box, along a direction or along the axes (NULL), then
+ * middles of plane faces, then points of equal area.
  * Returns  CW_ERR_NO_MEMORY; free the list with cwi_free() */
-CW_NODISCARD cw_status cwi_list_places(const cwi_target *target, cwi_text_place **places,
-                                       size_t *count, cw_error *err);
+CW_NODISCARD cw_status cwi_list_places(const cwi_target *target, const double *direction,
+                                       cwi_text_place **places, size_t *count,
+                                       cw_error *err);
 
 /* Requirements of a place. */
 typedef struct cwi_room_for_text {

@@ -24,7 +24,7 @@ static const double MARGIN = 0.25;
 static const double SMALLER = 0.85;
 enum { FLAT_SIZES = 5, CURVED_SIZES = 20 };
 
-/* Flat places are off their plane by up to this much of the depth. Levels of flatness are a half of that. */
+/* Flat places are off their plane by up to this much of the depth. Those up to a half of it are equal. */
 static const double FLAT = 0.25;
 
 /* Angles that the surface may lean by: noise on flat places, and curved ones. */
@@ -35,6 +35,9 @@ static const double COARSE = 0.5, FINE = 1.0 / 6;
 
 /* Cosine of the largest angle between a place and the direction that was asked for. */
 static const double TOWARD = 0.866;
+
+/* Differences of cosines to that direction, and of deviations and areas in proportion, that make no place better. */
+static const double SAME_FACING = 0.005, SAME_DEVIATION = 0.1, SAME_AREA = 1e-3;
 
 /* Places that are tried for letters before a smaller size is. */
 enum { TRIES = 12 };
@@ -131,7 +134,8 @@ static cw_status find_places(place_search *s, cw_error *err)
     const bool is_directed = cwi_normalise(direction);
     cw_status st = s->desc->has_at
                        ? find_given_place(s, is_directed ? direction : NULL, err)
-                       : cwi_list_places(s->target, &s->places, &s->count, err);
+                       : cwi_list_places(s->target, is_directed ? direction : NULL, &s->places,
+                                         &s->count, err);
     if (st == CW_OK && is_directed && !s->desc->has_at) {
         size_t kept = 0;
         for (size_t n = 0; n < s->count; n++)
@@ -159,21 +163,33 @@ static cw_status look_at_places(place_search *s, cw_error *err)
                             "find the place", look_at_one, s, err);
 }
 
-/* Returns true if place a is better than b: flatter, not facing down, the middle of a face, of a larger one. */
+/* Returns the cosine of a place's angle to the direction that was asked for; 0 without one. */
+static double facing_of(const place_search *s, size_t n)
+{
+    double direction[3];
+    memcpy(direction, s->desc->direction, sizeof direction);
+    return cwi_normalise(direction) ? cwi_dot(direction, s->fitted[n].normal) : 0;
+}
+
+/* Returns true if place a is clearly better than b: flat, facing the direction that was asked for, flatter, not facing
+ * down, the middle of a plane face, of a larger one. */
 static bool is_better(const place_search *s, size_t a, size_t b)
 {
     const cwi_text_place *p = &s->fitted[a], *q = &s->fitted[b];
-    const double level = FLAT / 2 * s->size.depth;
-    const double da = floor(s->looks[a].deviation / level),
-                 db = floor(s->looks[b].deviation / level);
+    const double level = FLAT / 2 * s->size.depth, da = s->looks[a].deviation,
+                 db = s->looks[b].deviation;
+    const bool flat_a = da <= level, flat_b = db <= level;
+    const double toward = facing_of(s, a) - facing_of(s, b);
     const bool down_a = p->normal[2] < -0.5, down_b = q->normal[2] < -0.5;
-    if (da != db)
+    if (flat_a != flat_b)
+        return flat_a;
+    if (fabs(toward) > SAME_FACING)
+        return toward > 0;
+    if (fabs(da - db) > cwi_greater(level, SAME_DEVIATION * cwi_greater(da, db)))
         return da < db;
     if (down_a != down_b)
         return down_b;
-    if (fabs(p->area - q->area) > 1e-3 * cwi_greater(p->area, q->area))
-        return p->area > q->area;
-    return false;
+    return flat_a && p->area - q->area > SAME_AREA * p->area;
 }
 
 /* Returns the best place that fits, or count. */

@@ -9,7 +9,7 @@
 #include <string.h>
 
 /* Plane faces and points that are looked at, at most. */
-enum { MAX_FACES = 48, POINTS = 500 };
+enum { MAX_FACES = 48, POINTS = 500, MIDDLES = 6 };
 
 /* Steps of normals, for 1, and of distances along them, for the diagonal. Triangles in the same steps are of a face. */
 static const double NORMAL_STEPS = 32, DISTANCE_STEPS = 500;
@@ -192,13 +192,34 @@ static void add_points(const cwi_target *target, cwi_text_place *places, size_t 
     }
 }
 
-cw_status cwi_list_places(const cwi_target *target, cwi_text_place **places, size_t *count,
-                          cw_error *err)
+/* Adds the points of the surface that are before the middle of the box: along a direction, or along the axes, from the
+ * front first. */
+static void add_middles(const cwi_target *target, const double *direction,
+                        cwi_text_place *places, size_t *count)
+{
+    static const double axes[MIDDLES][3] = {{0, -1, 0}, {1, 0, 0},  {-1, 0, 0},
+                                            {0, 1, 0},  {0, 0, 1}, {0, 0, -1}};
+    for (int n = 0; n < (direction ? 1 : MIDDLES); n++) {
+        double height, lean;
+        cwi_text_place p = {.hint = {1, 0, 0}};
+        memcpy(p.normal, direction ? direction : axes[n], sizeof p.normal);
+        cwi_add_scaled(target->middle, target->diagonal, p.normal, p.center);
+        cwi_set_frame(&p);
+        if (!cwi_find_height(target, &p, 0, 0, 2 * target->diagonal, &height, &lean))
+            continue;
+        cwi_add_scaled(p.center, height, p.normal, p.center);
+        add_places(places, count, p.center, p.normal, 0, NULL);
+    }
+}
+
+cw_status cwi_list_places(const cwi_target *target, const double *direction,
+                          cwi_text_place **places, size_t *count, cw_error *err)
 {
     *count = 0;
-    *places = cwi_alloc_array(2 * 3 * MAX_FACES + 2 * POINTS, sizeof **places);
+    *places = cwi_alloc_array(2 * 3 * MAX_FACES + 2 * (POINTS + MIDDLES), sizeof **places);
     if (!*places)
         return cwi_fail_memory(err);
+    add_middles(target, direction, *places, count);
     cw_status st = add_faces(target, 0, *places, count, err);
     if (st == CW_OK)
         st = add_faces(target, 0.5, *places, count, err);

@@ -89,6 +89,7 @@ cw_status cwi_target_build(cwi_target *target, const cw_mesh *mesh, cw_error *er
     *target = (cwi_target){.mesh = mesh};
     cwi_box_clear(low, high);
     cwi_box_add_points(low, high, mesh->positions, mesh->vertex_count);
+    cwi_midpoint(low, high, target->middle);
     target->diagonal = cwi_box_diagonal(low, high);
     for (size_t n = 0; n < 3 * mesh->vertex_count; n++)
         max = fmaxf(max, fabsf(mesh->positions[n]));

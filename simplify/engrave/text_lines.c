@@ -12,8 +12,8 @@
 static const double ROUND_DEG = 60;
 enum { ROUND_STEPS = 6 };
 
-/* Width of the gap between characters, in units of the font: the strokes are as wide as a unit. */
-static const double GAP = 2.4;
+/* Width of the gap after a character, and of a space, in units of the font: the strokes are as wide as a unit. */
+static const double GAP = 2.4, SPACE = 1;
 
 static bool add_line(cwi_text_lines *l, size_t *capacity, const double from[2],
                      const double to[2])
@@ -151,7 +151,7 @@ cw_status cwi_lay_out_text(const char *text, cwi_text_lines *l, cw_error *err)
     *l = (cwi_text_lines){0};
     for (const char *t = text; *t; length++) {
         const uint32_t c = cwi_next_character(&t);
-        double width = CWI_GLYPH_SPACE;
+        double width = SPACE;
         const size_t count = c == ' ' ? 0 : cwi_glyph(c, strokes, &width);
         if (c != ' ' && count == 0)
             return refuse_characters(text, err);
