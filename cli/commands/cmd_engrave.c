@@ -33,7 +33,7 @@ static const engrave_args defaults = {0};
 
 static const cli_option options[] = {
     CLI_MESH_OUTPUT(""),
-    {"text", 't', CLI_TEXT, "TEXT",
+    {"text", 0, CLI_TEXT, "TEXT",
      "Text in one line; may hold {stem}, {parent}, and of parts {name} and {label}",
      offsetof(engrave_args, text)},
     {"emboss", 0, CLI_FLAG, NULL, "Raise the text (off: it is cut in)",
@@ -185,9 +185,10 @@ static cw_status engrave_pieces(cli_mesh_run *r, cw_error *err)
         desc.direction[a] = args->direction.count ? args->direction.value[a] : 0;
     }
     if (desc.has_at && r->pieces.count > 1)
-        return cwi_fail(err, CW_ERR_ARGUMENT,
-                        "--at is one point, and there are %zu parts: --merge makes them one mesh",
-                        r->pieces.count);
+        return cwi_fail(
+            err, CW_ERR_ARGUMENT,
+            "--at is one point, and there are %zu parts: --merge makes them one mesh",
+            r->pieces.count);
     s->pieces = calloc(r->pieces.count, sizeof *s->pieces);
     if (!s->pieces)
         return cwi_fail_memory(err);

@@ -100,8 +100,8 @@ static cw_status describe_text(const cli_extract_run *s, cli_surface_settings *s
                                cw_error *err)
 {
     char *text = NULL;
-    const cw_status st = cli_fill_engraved_text(s->args->engrave, s->input.volume.path, NULL,
-                                                NULL, &text, err);
+    const cw_status st =
+        cli_fill_engraved_text(s->args->engrave, s->input.volume.path, NULL, NULL, &text, err);
     if (st != CW_OK)
         return cwi_fail_in(err, st, "--engrave");
     snprintf(set->text, sizeof set->text, "%s", text);
@@ -324,7 +324,8 @@ cw_status cli_extract_judge(cli_extract_run *s, cli_made *made, const cw_mesh *m
         return CW_OK;
     }
     /* sections and letters are far from the isosurface, as they should be */
-    cw_status st = args->cut.given || args->engrave ? CW_OK : measure_from_field(s, made, mesh, err);
+    cw_status st =
+        args->cut.given || args->engrave ? CW_OK : measure_from_field(s, made, mesh, err);
     return st == CW_OK && is_simplified && !s->plan.view_count && !args->pixel.most.given
                ? measure_from_full(s, made, mesh, err)
                : st;

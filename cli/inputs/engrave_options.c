@@ -44,17 +44,20 @@ static double round_off(double x, double unit)
 
 void cli_tell_engraved(const char *path, const cw_engrave_facts *f)
 {
-    cli_say("%s: letters %.3g mm high, %.3g mm deep, at %.4g, %.4g, %.4g, facing %.3g, %.3g, %.3g", path,
-            f->size_mm, f->depth_mm, round_off(f->center[0], f->size_mm),
-            round_off(f->center[1], f->size_mm), round_off(f->center[2], f->size_mm),
-            round_off(f->normal[0], 1), round_off(f->normal[1], 1), round_off(f->normal[2], 1));
+    cli_say(
+        "%s: letters %.3g mm high, %.3g mm deep, at %.4g, %.4g, %.4g, facing %.3g, %.3g, %.3g",
+        path, f->size_mm, f->depth_mm, round_off(f->center[0], f->size_mm),
+        round_off(f->center[1], f->size_mm), round_off(f->center[2], f->size_mm),
+        round_off(f->normal[0], 1), round_off(f->normal[1], 1), round_off(f->normal[2], 1));
     if (f->lean_deg > CURVED_DEG)
-        cli_say("%s: the text follows the surface, which is up to %.3g mm off a plane and leans by up "
-                "to %.0f degrees",
-                path, f->deviation_mm, f->lean_deg);
+        cli_say(
+            "%s: the text follows the surface, which is up to %.3g mm off a plane and leans by up "
+            "to %.0f degrees",
+            path, f->deviation_mm, f->lean_deg);
     if (f->stroke_mm < NOZZLE_MM)
-        cli_say("%s: strokes are %.2g mm wide; nozzles of %g mm need --size %.3gmm or more", path,
-                f->stroke_mm, NOZZLE_MM, ceil(10 * NOZZLE_MM * f->size_mm / f->stroke_mm) / 10);
+        cli_say("%s: strokes are %.2g mm wide; nozzles of %g mm need --size %.3gmm or more",
+                path, f->stroke_mm, NOZZLE_MM,
+                ceil(10 * NOZZLE_MM * f->size_mm / f->stroke_mm) / 10);
 }
 
 void cli_json_engraved(cli_json *j, const cw_engrave_facts *f)

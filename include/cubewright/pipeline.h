@@ -138,8 +138,8 @@ typedef struct cw_pipeline_facts {
     cw_close_handles_facts handles; /* CW_STAGE_HANDLES */
     cw_atlas_facts atlas;           /* CW_STAGE_ATLAS: of the surface, or of all levels */
     cw_bake_facts baked;            /* CW_STAGE_MAPS: the same */
-    size_t creases; /* edges: CW_STAGE_CREASES, of the surface given away last */
-    cw_engrave_facts engraved;      /* CW_STAGE_ENGRAVE */
+    size_t creases;            /* edges: CW_STAGE_CREASES, of the surface given away last */
+    cw_engrave_facts engraved; /* CW_STAGE_ENGRAVE */
 } cw_pipeline_facts;
 
 /* A finished surface, or a level of detail. */

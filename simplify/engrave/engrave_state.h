@@ -76,8 +76,7 @@ bool cwi_find_height(const cwi_target *target, const cwi_text_place *place, doub
  * middles of plane faces, then points of equal area.
  * Returns  CW_ERR_NO_MEMORY; free the list with cwi_free() */
 CW_NODISCARD cw_status cwi_list_places(const cwi_target *target, const double *direction,
-                                       cwi_text_place **places, size_t *count,
-                                       cw_error *err);
+                                       cwi_text_place **places, size_t *count, cw_error *err);
 
 /* Requirements of a place. */
 typedef struct cwi_room_for_text {

@@ -20,9 +20,9 @@ static const double MAX_STROKE = 0.25;
 /* Margin around the text, by the size. */
 static const double MARGIN = 0.25;
 
-/* Factor from one size that is tried to the next, and sizes: on flat places, then on curved ones. */
+/* Factor from one size that is tried to the next, and sizes: on flat places, then on curved ones. Steps are halved in the end. */
 static const double SMALLER = 0.85;
-enum { FLAT_SIZES = 5, CURVED_SIZES = 20 };
+enum { FLAT_SIZES = 5, CURVED_SIZES = 20, HALVINGS = 3 };
 
 /* Flat places are off their plane by up to this much of the depth. Those up to a half of it are equal. */
 static const double FLAT = 0.25;
@@ -107,13 +107,13 @@ static cw_status find_given_place(place_search *s, const double direction[3], cw
         memcpy(p.center, at, sizeof at);
         memcpy(p.normal, direction, sizeof p.normal);
         cwi_set_frame(&p);
-        if (!cwi_find_height(s->target, &p, 0, 0, 2 * s->target->diagonal + cwi_length(at), &height,
-                             &lean))
-            return cwi_fail(err, CW_ERR_CHECK,
-                            "no surface that faces %.4g, %.4g, %.4g is along that direction from %.6g, "
-                            "%.6g, %.6g",
-                            direction[0], direction[1], direction[2], d->at[0], d->at[1],
-                            d->at[2]);
+        if (!cwi_find_height(s->target, &p, 0, 0, 2 * s->target->diagonal + cwi_length(at),
+                             &height, &lean))
+            return cwi_fail(
+                err, CW_ERR_CHECK,
+                "no surface that faces %.4g, %.4g, %.4g is along that direction from %.6g, "
+                "%.6g, %.6g",
+                direction[0], direction[1], direction[2], d->at[0], d->at[1], d->at[2]);
         cwi_add_scaled(p.center, height, p.normal, p.center);
     } else {
         find_nearest(s->target, at, &p);
@@ -132,10 +132,9 @@ static cw_status find_places(place_search *s, cw_error *err)
     double direction[3];
     memcpy(direction, s->desc->direction, sizeof direction);
     const bool is_directed = cwi_normalise(direction);
-    cw_status st = s->desc->has_at
-                       ? find_given_place(s, is_directed ? direction : NULL, err)
-                       : cwi_list_places(s->target, is_directed ? direction : NULL, &s->places,
-                                         &s->count, err);
+    cw_status st = s->desc->has_at ? find_given_place(s, is_directed ? direction : NULL, err)
+                                   : cwi_list_places(s->target, is_directed ? direction : NULL,
+                                                     &s->places, &s->count, err);
     if (st == CW_OK && is_directed && !s->desc->has_at) {
         size_t kept = 0;
         for (size_t n = 0; n < s->count; n++)
@@ -152,8 +151,7 @@ static void look_at_one(void *context, size_t n)
 {
     place_search *s = context;
     s->fitted[n] = s->places[n];
-    s->looks[n] =
-        cwi_look_at_place(s->target, &s->fitted[n], &s->room, COARSE * s->size.size);
+    s->looks[n] = cwi_look_at_place(s->target, &s->fitted[n], &s->room, COARSE * s->size.size);
 }
 
 /* Looks at all places for a size. Returns CW_ERR_CANCELLED */
@@ -209,8 +207,7 @@ static cw_status try_place(place_search *s, size_t n, cwi_placed_text *placed, c
 {
     const cwi_text_size *t = &s->size;
     cwi_text_place place = s->fitted[n];
-    const cwi_place_look look =
-        cwi_look_at_place(s->target, &place, &s->room, FINE * t->size);
+    const cwi_place_look look = cwi_look_at_place(s->target, &place, &s->room, FINE * t->size);
     s->looks[n] = look;
     if (look.result != CWI_PLACE_FITS)
         return cwi_fail(err, CW_ERR_CHECK, "the place does not fit");
@@ -218,10 +215,10 @@ static cw_status try_place(place_search *s, size_t n, cwi_placed_text *placed, c
     const double under = cwi_lesser(cwi_greater(t->depth / 2, cell), look.thickness / 2);
     const double over = cwi_greater(t->depth, 2 * cell);
     cw_mesh_free(&placed->tool);
-    cw_status st = cwi_make_letters(s->target, &place, &placed->region,
-                                    s->desc->emboss ? under : t->depth,
-                                    s->desc->emboss ? t->depth : over,
-                                    s->room.half_width + s->room.half_height, &placed->tool, err);
+    cw_status st =
+        cwi_make_letters(s->target, &place, &placed->region, s->desc->emboss ? under : t->depth,
+                         s->desc->emboss ? t->depth : over,
+                         s->room.half_width + s->room.half_height, &placed->tool, err);
     if (st == CW_ERR_CHECK)
         s->looks[n].result = CWI_PLACE_BENDS;
     placed->size = *t;
@@ -235,9 +232,10 @@ static cw_status try_size(place_search *s, double size, bool is_flat, cwi_placed
                           cw_error *err)
 {
     if (!set_size(s, size, is_flat))
-        return cwi_fail(err, CW_ERR_ARGUMENT,
-                        "strokes of %.3g mm need a size of %.3g mm or more to be read; it is %.3g mm",
-                        s->size.stroke, s->size.stroke / MAX_STROKE, size);
+        return cwi_fail(
+            err, CW_ERR_ARGUMENT,
+            "strokes of %.3g mm need a size of %.3g mm or more to be read; it is %.3g mm",
+            s->size.stroke, s->size.stroke / MAX_STROKE, size);
     cw_status st = look_at_places(s, err);
     size_t best = st == CW_OK ? find_best(s) : s->count;
     if (best == s->count)
@@ -254,18 +252,39 @@ static cw_status try_size(place_search *s, double size, bool is_flat, cwi_placed
     return cwi_fail(err, CW_ERR_CHECK, "no place fits");
 }
 
-/* Finds the largest size up to one that fits: on a flat place if that is not much smaller. */
-static cw_status try_sizes(place_search *s, double largest, cwi_placed_text *placed,
+/* Halves the steps between a size that fits and the next larger one, which does not. */
+static cw_status widen_size(place_search *s, double size, bool is_flat, cwi_placed_text *placed,
+                            cw_error *err)
+{
+    double fits = size, fails = size / SMALLER;
+    cw_status st = CW_OK;
+    for (int n = 0; n < HALVINGS && (st == CW_OK || st == CW_ERR_CHECK); n++) {
+        const double middle = sqrt(fits * fails);
+        st = try_size(s, middle, is_flat, placed, err);
+        if (st == CW_OK)
+            fits = middle;
+        else
+            fails = middle;
+    }
+    return st == CW_ERR_CHECK ? try_size(s, fits, is_flat, placed, err) : st;
+}
+
+/* Finds the largest size up to one that fits: on a flat place if that is not much smaller.
+ * first  0; 1: the largest is known not to fit */
+static cw_status try_sizes(place_search *s, double largest, int first, cwi_placed_text *placed,
                            cw_error *err)
 {
     cw_status st = CW_ERR_CHECK;
     for (int n = 0; n < FLAT_SIZES + CURVED_SIZES && st == CW_ERR_CHECK; n++) {
         const bool is_flat = n < FLAT_SIZES;
-        const double size = largest * pow(SMALLER, is_flat ? n : n - FLAT_SIZES);
+        const int step = first + (is_flat ? n : n - FLAT_SIZES);
+        const double size = largest * pow(SMALLER, step);
         if (s->desc->stroke_mm > MAX_STROKE * size)
             n = is_flat ? FLAT_SIZES - 1 : FLAT_SIZES + CURVED_SIZES;
         else
             st = try_size(s, size, is_flat, placed, err);
+        if (st == CW_OK && step > 0)
+            st = widen_size(s, size, is_flat, placed, err);
     }
     return st;
 }
@@ -282,12 +301,13 @@ static void describe_failure(const place_search *s, char *why, size_t size)
         if (s->looks[n].result == CWI_PLACE_THIN)
             thickness = cwi_greater(thickness, s->looks[n].thickness);
     }
-    const char *where = s->desc->has_at ? "at that point" : "at each place of that size";
+    const char *where = s->desc->has_at ? "at that point" : "where the text has room";
     if (farthest == CWI_PLACE_THIN)
-        snprintf(why, size,
-                 "the material %s is up to %.3g mm thick; a depth of %.3g mm and a wall of %.3g "
-                 "mm need %.3g mm",
-                 where, thickness, s->size.depth, s->size.wall, s->room.thickness);
+        snprintf(
+            why, size,
+            "the material is %.3g mm thick at most %s; a depth of %.3g mm and a wall of %.3g "
+            "mm need %.3g mm",
+            thickness, where, s->size.depth, s->size.wall, s->room.thickness);
     else if (farthest == CWI_PLACE_COVERED)
         snprintf(why, size, "something is less than %.3g mm in front of the surface %s",
                  s->room.front, where);
@@ -295,10 +315,9 @@ static void describe_failure(const place_search *s, char *why, size_t size)
         snprintf(why, size, "the surface %s leans by more than %.0f degrees, or has steps",
                  where, LEAN_DEG);
     else
-        snprintf(why, size, "the surface %s is not that large",
-                 s->desc->has_at ? where : "has no place that");
-    if (farthest == CWI_PLACE_ENDS && !s->desc->has_at)
-        snprintf(why, size, "no place of the surface is that large");
+        snprintf(why, size, "%s",
+                 s->desc->has_at ? "the surface ends within that box around the point"
+                                 : "no place of the surface is that large");
 }
 
 /* Fails with the reason, and with the size that fits. */
@@ -310,16 +329,17 @@ static cw_status refuse_size(place_search *s, double size, cwi_placed_text *plac
     (void)set_size(s, size, false);
     describe_failure(s, why, sizeof why);
     if (s->desc->size_mm > 0) {
-        const cw_status st = try_sizes(s, SMALLER * size, placed, err);
+        const cw_status st = try_sizes(s, size, 1, placed, err);
         if (st == CW_OK)
             snprintf(fits, sizeof fits, "; a size of %.3g mm fits",
                      0.999 * placed->size.size); /* three digits do not round it up */
         else if (st != CW_ERR_CHECK && st != CW_ERR_ARGUMENT)
             return st;
     }
-    return cwi_fail(err, CW_ERR_CHECK,
-                    "the text is %.3g x %.3g mm at a size of %.3g mm, with a margin of %.3g mm: %s%s",
-                    t.width, t.height, size, MARGIN * size, why, fits);
+    return cwi_fail(
+        err, CW_ERR_CHECK,
+        "the text is %.3g x %.3g mm at a size of %.3g mm, with a margin of %.3g mm: %s%s",
+        t.width, t.height, size, MARGIN * size, why, fits);
 }
 
 cw_status cwi_place_text(const cwi_target *target, const cwi_text_lines *lines,
@@ -335,7 +355,7 @@ cw_status cwi_place_text(const cwi_target *target, const cwi_text_lines *lines,
             st = try_size(&s, size, false, placed, err);
     } else if (st == CW_OK) {
         size = cwi_greater(SIZE * target->diagonal, desc->stroke_mm / MAX_STROKE);
-        st = try_sizes(&s, size, placed, err);
+        st = try_sizes(&s, size, 0, placed, err);
         size = s.size.size;
     }
     if (st == CW_ERR_CHECK && s.looks)

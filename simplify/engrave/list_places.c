@@ -64,9 +64,12 @@ static void add_triangles(face_table *table, const cwi_target *target, double sh
             face->center[a] += area * middle[a];
             face->normal[a] += area * normal[a];
         }
-        for (int m = 0; m < 6; m++)
+        for (int m = 0; m < 6; m++) {
+            const int i = pairs[m][0], j = pairs[m][1];
+            face->moment[m] += area / 12 * 9 * middle[i] * middle[j];
             for (int c = 0; c < 3; c++)
-                face->moment[m] += area / 3 * p[c][pairs[m][0]] * p[c][pairs[m][1]];
+                face->moment[m] += area / 12 * p[c][i] * p[c][j];
+        }
     }
 }
 
@@ -197,7 +200,7 @@ static void add_points(const cwi_target *target, cwi_text_place *places, size_t 
 static void add_middles(const cwi_target *target, const double *direction,
                         cwi_text_place *places, size_t *count)
 {
-    static const double axes[MIDDLES][3] = {{0, -1, 0}, {1, 0, 0},  {-1, 0, 0},
+    static const double axes[MIDDLES][3] = {{0, -1, 0}, {1, 0, 0}, {-1, 0, 0},
                                             {0, 1, 0},  {0, 0, 1}, {0, 0, -1}};
     for (int n = 0; n < (direction ? 1 : MIDDLES); n++) {
         double height, lean;

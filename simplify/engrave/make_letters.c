@@ -19,11 +19,13 @@ static cw_status find_heights(const cwi_target *target, const cwi_text_place *pl
         const double *p = region->points[n];
         double lean;
         if (!cwi_find_height(target, place, p[0], p[1], reach, &heights[n], &lean))
-            return cwi_fail(err, CW_ERR_CHECK, "the surface has a hole or an end under the text");
-        if (lean < cos(STEEP_DEG * CWI_PI / 180))
             return cwi_fail(err, CW_ERR_CHECK,
-                            "the surface leans by %.0f degrees under the text; up to %.0f are followed",
-                            acos(lean) * 180 / CWI_PI, STEEP_DEG);
+                            "the surface has a hole or an end under the text");
+        if (lean < cos(STEEP_DEG * CWI_PI / 180))
+            return cwi_fail(
+                err, CW_ERR_CHECK,
+                "the surface leans by %.0f degrees under the text; up to %.0f are followed",
+                acos(lean) * 180 / CWI_PI, STEEP_DEG);
     }
     const double max_slope = tan(STEEP_DEG * CWI_PI / 180);
     for (size_t n = 0; n < 3 * region->triangle_count; n++) {
@@ -46,9 +48,8 @@ static void place_sheets(const cwi_text_place *place, const cwi_region *region,
         const double *p = region->points[from];
         const double z = heights[from] + (n < region->point_count ? above : -below);
         for (size_t a = 0; a < 3; a++)
-            tool->positions[3 * n + a] =
-                (float)(place->center[a] + p[0] * place->right[a] + p[1] * place->up[a] +
-                        z * place->normal[a]);
+            tool->positions[3 * n + a] = (float)(place->center[a] + p[0] * place->right[a] +
+                                                 p[1] * place->up[a] + z * place->normal[a]);
     }
 }
 

@@ -92,8 +92,8 @@ static void fill_facts(const cw_mesh *mesh, const cwi_text_lines *lines,
     };
     for (int a = 0; a < 3; a++) {
         facts->center[a] = mesh->origin[a] + placed->place.center[a];
-        facts->normal[a] = placed->place.normal[a];
-        facts->right[a] = placed->place.right[a];
+        facts->normal[a] = placed->place.normal[a] + 0.0; /* -0 becomes 0 */
+        facts->right[a] = placed->place.right[a] + 0.0;
     }
 }
 

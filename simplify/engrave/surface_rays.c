@@ -1,6 +1,6 @@
 /* Casts rays at a surface: heights above a plane, and free space along a direction. */
-#include "core/geometry/bvh_segment.h"
 #include "core/geometry/box.h"
+#include "core/geometry/bvh_segment.h"
 #include "core/mesh/mesh.h"
 #include "core/mesh/mesh_triangle.h"
 #include "core/mesh/triangle_boxes.h"
@@ -53,9 +53,8 @@ static bool visit_triangle(void *context, size_t slot)
     if (!(fraction >= r->least && fraction <= 1))
         return true;
     cwi_triangle_normal(p[0], p[1], p[2], normal);
-    const double cosine = cwi_normalise(normal)
-                              ? -cwi_dot(normal, r->vector) / cwi_length(r->vector)
-                              : 0;
+    const double cosine =
+        cwi_normalise(normal) ? -cwi_dot(normal, r->vector) / cwi_length(r->vector) : 0;
     if (r->faces_only && !(cosine > 0))
         return true;
     const double gap = fabs(fraction - r->wanted), best = fabs(r->found - r->wanted);

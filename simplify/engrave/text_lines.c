@@ -137,10 +137,11 @@ static cw_status refuse_characters(const char *text, cw_error *err)
                                  used ? ", " : "", is_shown ? (int)(t - start) : 0, start,
                                  is_shown ? " " : "", (unsigned)c);
     }
-    return cwi_fail(err, CW_ERR_ARGUMENT,
-                    "the font has no %s; it has letters, digits and signs of ASCII, and some others such "
-                    "as the degree",
-                    names);
+    return cwi_fail(
+        err, CW_ERR_ARGUMENT,
+        "the font has no %s; it has letters, digits and signs of ASCII, and some others such "
+        "as the degree",
+        names);
 }
 
 cw_status cwi_lay_out_text(const char *text, cwi_text_lines *l, cw_error *err)
@@ -165,7 +166,8 @@ cw_status cwi_lay_out_text(const char *text, cwi_text_lines *l, cw_error *err)
     }
     return center_lines(l)
                ? CW_OK
-               : cwi_fail(err, CW_ERR_ARGUMENT, "the text is empty: a letter, a digit or a sign is needed");
+               : cwi_fail(err, CW_ERR_ARGUMENT,
+                          "the text is empty: a letter, a digit or a sign is needed");
 }
 
 void cwi_free_text_lines(cwi_text_lines *l)

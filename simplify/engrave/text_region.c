@@ -19,8 +19,9 @@ static const double APART = 0.03;
 typedef struct field_grid {
     size_t columns, rows; /* of points */
     double low[2], cell;
-    float *field;    /* points: distance to the strokes' outline, negative inside */
-    uint32_t *point; /* points x 3: numbers in the region of the point, and of those on the edges to the next column and
+    float *field; /* points: distance to the strokes' outline, negative inside */
+    uint32_t *
+        point; /* points x 3: numbers in the region of the point, and of those on the edges to the next column and
                         row; UINT32_MAX: none yet */
 } field_grid;
 
@@ -117,7 +118,8 @@ static bool cut_cell(field_grid *g, cwi_region *r, size_t node)
     size_t count = 0;
     for (int c = 0; c < 4; c++)
         inside[c] = g->field[corner[c]] < 0;
-    const bool is_apart = inside[0] == inside[2] && inside[1] == inside[3] && inside[0] != inside[1];
+    const bool is_apart =
+        inside[0] == inside[2] && inside[1] == inside[3] && inside[0] != inside[1];
     for (int c = 0; c < 4; c++) {
         const int next = (c + 1) % 4, before = (c + 3) % 4;
         if (is_apart) {

@@ -499,7 +499,11 @@ static void labels_are_simplified_together_and_given_away_apart(void **state)
 
 /* --- rules ---------------------------------------------------------------------------------- */
 
-enum { TEXTURE = 1u << CW_STAGE_ATLAS | 1u << CW_STAGE_MAPS, CREASES = 1u << CW_STAGE_CREASES, TEXT = 1u << CW_STAGE_ENGRAVE };
+enum {
+    TEXTURE = 1u << CW_STAGE_ATLAS | 1u << CW_STAGE_MAPS,
+    CREASES = 1u << CW_STAGE_CREASES,
+    TEXT = 1u << CW_STAGE_ENGRAVE
+};
 
 /* Stages that a source excludes, by themselves. */
 static const struct excluded {
@@ -510,7 +514,8 @@ static const struct excluded {
     {CW_SOURCE_SLICES, 1u << CW_STAGE_VIEWS | 1u << CW_STAGE_LARGEST |
                            1u << CW_STAGE_FILL_VOIDS | 1u << CW_STAGE_HANDLES |
                            1u << CW_STAGE_SMOOTH | 1u << CW_STAGE_CUT | 1u << CW_STAGE_CULL |
-                           1u << CW_STAGE_LOD | 1u << CW_STAGE_COLOR | TEXTURE | CREASES | TEXT},
+                           1u << CW_STAGE_LOD | 1u << CW_STAGE_COLOR | TEXTURE | CREASES |
+                           TEXT},
     {CW_SOURCE_PARTS, 1u << CW_STAGE_VIEWS | 1u << CW_STAGE_LARGEST |
                           1u << CW_STAGE_FILL_VOIDS | 1u << CW_STAGE_HANDLES |
                           1u << CW_STAGE_SMOOTH | 1u << CW_STAGE_CUT | 1u << CW_STAGE_CULL |
