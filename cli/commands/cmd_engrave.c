@@ -3,7 +3,7 @@
 #include "cli/commands/mesh_command.h"
 #include "cli/framework/console.h"
 #include "cli/framework/quantity.h"
-#include "cli/inputs/engrave_options.h"
+#include "cli/letters/engraved_text.h"
 #include "core/base/memory.h"
 #include "core/base/status.h"
 

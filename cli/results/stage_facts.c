@@ -5,7 +5,7 @@
 #include "cli/framework/console.h"
 #include "cli/framework/quantity.h"
 #include "cli/inputs/cut_options.h"
-#include "cli/inputs/engrave_options.h"
+#include "cli/letters/engraved_text.h"
 
 #include <math.h>
 #include <stdio.h>

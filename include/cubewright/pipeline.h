@@ -20,9 +20,9 @@ extern "C" {
 #endif
 
 /* The stages: constant, and name. They run in this order, but that handles are closed between
- * CW_STAGE_FILL_VOIDS and CW_STAGE_SMOOTH, text is engraved between CW_STAGE_CUT and CW_STAGE_SIMPLIFY, texture coordinates are made between CW_STAGE_LOD and
- * CW_STAGE_NORMALS, which parts at creases next, and maps are baked between CW_STAGE_COLOR and CW_STAGE_CHECK. One that a later version
- * adds gets the next number, wherever it runs. */
+ * CW_STAGE_FILL_VOIDS and CW_STAGE_SMOOTH, text is engraved between CW_STAGE_CUT and CW_STAGE_SIMPLIFY, texture
+ * coordinates are made between CW_STAGE_LOD and CW_STAGE_NORMALS, which parts at creases next, and maps are baked
+ * between CW_STAGE_COLOR and CW_STAGE_CHECK. One that a later version adds gets the next number, wherever it runs. */
 #define CW_STAGE_TABLE(X)                                                                      \
     X(CW_STAGE_VIEWS, "camera")                                                                \
     X(CW_STAGE_EXTRACT, "extract")                                                             \

@@ -22,7 +22,7 @@ CW_NODISCARD cw_status cwi_lay_out_text(const char *text, cwi_text_lines *lines,
 void cwi_free_text_lines(cwi_text_lines *lines);
 
 /* A region of the plane as triangles, against the clock. Its border is edges that have it on their left. */
-typedef struct cwi_region {
+typedef struct cwi_stroke_region {
     double (*points)[2];
     size_t point_count, point_capacity;
     uint32_t (*triangles)[3];
@@ -30,30 +30,32 @@ typedef struct cwi_region {
     uint32_t (*border)[2];
     size_t border_count, border_capacity;
     double cell; /* side of the cells that the triangles lie in */
-} cwi_region;
+} cwi_stroke_region;
 
 /* Fills the region that strokes of a width cover.
  * unit     of the strokes, mm
- * Returns  CW_ERR_LIMIT; CW_ERR_NO_MEMORY; free it with cwi_free_region() */
+ * Returns  CW_ERR_LIMIT; CW_ERR_NO_MEMORY; free it with cwi_free_stroke_region() */
 CW_NODISCARD cw_status cwi_fill_strokes(const cwi_text_lines *lines, double unit,
-                                        double stroke_mm, cwi_region *region, cw_error *err);
-void cwi_free_region(cwi_region *region);
+                                        double stroke_mm, cwi_stroke_region *region,
+                                        cw_error *err);
+void cwi_free_stroke_region(cwi_stroke_region *region);
 
 /* A surface that rays are cast at. Points are relative to the mesh's origin. */
-typedef struct cwi_target {
+typedef struct cwi_ray_target {
     const cw_mesh *mesh;
     cwi_boxes tree;
     double middle[3], diagonal; /* of the box */
     float slack;
-} cwi_target;
+} cwi_ray_target;
 
-CW_NODISCARD cw_status cwi_target_build(cwi_target *target, const cw_mesh *mesh, cw_error *err);
-void cwi_target_free(cwi_target *target);
+CW_NODISCARD cw_status cwi_ray_target_build(cwi_ray_target *target, const cw_mesh *mesh,
+                                            cw_error *err);
+void cwi_ray_target_free(cwi_ray_target *target);
 
 /* Returns the distance from a point to the first triangle along a direction, beyond a small fraction of the diagonal; or
  * INFINITY when it is farther than a reach. direction: unit */
-double cwi_cast_along(const cwi_target *target, const double from[3], const double direction[3],
-                      double reach);
+double cwi_cast_along(const cwi_ray_target *target, const double from[3],
+                      const double direction[3], double reach);
 
 /* A place for text: a point of the surface and a frame. */
 typedef struct cwi_text_place {
@@ -69,13 +71,13 @@ void cwi_set_frame(cwi_text_place *place);
 /* Finds the height of the surface above a point of the place's plane: that of the sheet that faces the reader, next to the
  * plane. Returns false when there is none within a reach.
  * lean  set to the cosine of the surface's angle to the plane */
-bool cwi_find_height(const cwi_target *target, const cwi_text_place *place, double x, double y,
-                     double reach, double *height, double *lean);
+bool cwi_find_height(const cwi_ray_target *target, const cwi_text_place *place, double x,
+                     double y, double reach, double *height, double *lean);
 
 /* Lists places that may hold text: those before the middle of the box, along a direction or along the axes (NULL), then
  * middles of plane faces, then points of equal area.
  * Returns  CW_ERR_NO_MEMORY; free the list with cwi_free() */
-CW_NODISCARD cw_status cwi_list_places(const cwi_target *target, const double *direction,
+CW_NODISCARD cw_status cwi_list_places(const cwi_ray_target *target, const double *direction,
                                        cwi_text_place **places, size_t *count, cw_error *err);
 
 /* Requirements of a place. */
@@ -104,15 +106,17 @@ typedef struct cwi_place_look {
 
 /* Fits the place's plane to the surface, and looks at the box around its middle.
  * step  of the points that are looked at, mm */
-cwi_place_look cwi_look_at_place(const cwi_target *target, cwi_text_place *place,
+cwi_place_look cwi_look_at_place(const cwi_ray_target *target, cwi_text_place *place,
                                  const cwi_room_for_text *room, double step);
 
 /* Makes the solid of the letters: the region between two sheets that follow the surface.
  * below, above  of the surface, mm along the normal; below may be negative
  * tool     its origin is that of the mesh; free it with cw_mesh_free()
  * Returns  CW_ERR_CHECK when the surface has a step or an end in the region; CW_ERR_NO_MEMORY */
-CW_NODISCARD cw_status cwi_make_letters(const cwi_target *target, const cwi_text_place *place,
-                                        const cwi_region *region, double below, double above,
-                                        double reach, cw_mesh *tool, cw_error *err);
+CW_NODISCARD cw_status cwi_make_letters(const cwi_ray_target *target,
+                                        const cwi_text_place *place,
+                                        const cwi_stroke_region *region, double below,
+                                        double above, double reach, cw_mesh *tool,
+                                        cw_error *err);
 
 #endif

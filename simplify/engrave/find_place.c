@@ -43,7 +43,7 @@ static const double SAME_FACING = 0.005, SAME_DEVIATION = 0.1, SAME_AREA = 1e-3;
 enum { TRIES = 12 };
 
 typedef struct place_search {
-    const cwi_target *target;
+    const cwi_ray_target *target;
     const cwi_text_lines *lines;
     const cw_engrave_desc *desc;
     cwi_text_place *places, *fitted; /* fitted: as looking at them left them */
@@ -86,7 +86,8 @@ static bool set_size(place_search *s, double size, bool is_flat)
 /* --- places ------------------------------------------------------------------------------- */
 
 /* Finds the point of the surface next to a point, and the normal there. */
-static void find_nearest(const cwi_target *target, const double at[3], cwi_text_place *place)
+static void find_nearest(const cwi_ray_target *target, const double at[3],
+                         cwi_text_place *place)
 {
     const cwi_closest found = cwi_closest_find(target->mesh, &target->tree, at);
     cwi_mesh_normal(target->mesh, found.triangle, place->normal);
@@ -240,7 +241,7 @@ static cw_status try_size(place_search *s, double size, bool is_flat, cwi_placed
     size_t best = st == CW_OK ? find_best(s) : s->count;
     if (best == s->count)
         return st == CW_OK ? cwi_fail(err, CW_ERR_CHECK, "no place fits") : st;
-    cwi_free_region(&placed->region);
+    cwi_free_stroke_region(&placed->region);
     st = cwi_fill_strokes(s->lines, s->size.unit, s->size.stroke, &placed->region, err);
     if (st != CW_OK)
         return st;
@@ -342,7 +343,7 @@ static cw_status refuse_size(place_search *s, double size, cwi_placed_text *plac
         t.width, t.height, size, MARGIN * size, why, fits);
 }
 
-cw_status cwi_place_text(const cwi_target *target, const cwi_text_lines *lines,
+cw_status cwi_place_text(const cwi_ray_target *target, const cwi_text_lines *lines,
                          const cw_engrave_desc *desc, cwi_placed_text *placed, cw_error *err)
 {
     place_search s = {.target = target, .lines = lines, .desc = desc};
@@ -368,6 +369,6 @@ cw_status cwi_place_text(const cwi_target *target, const cwi_text_lines *lines,
 
 void cwi_free_placed(cwi_placed_text *placed)
 {
-    cwi_free_region(&placed->region);
+    cwi_free_stroke_region(&placed->region);
     cw_mesh_free(&placed->tool);
 }

@@ -41,7 +41,7 @@ static plane_face *find_face(face_table *table, const int32_t key[4])
 }
 
 /* Adds all triangles to faces. shift: of the steps, so that a face between two of them is whole in one pass of two */
-static void add_triangles(face_table *table, const cwi_target *target, double shift)
+static void add_triangles(face_table *table, const cwi_ray_target *target, double shift)
 {
     static const int pairs[6][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {1, 2}, {2, 0}};
     for (size_t t = 0; t < target->mesh->triangle_count; t++) {
@@ -138,7 +138,7 @@ static void add_places(cwi_text_place *places, size_t *count, const double cente
     }
 }
 
-static cw_status add_faces(const cwi_target *target, double shift, cwi_text_place *places,
+static cw_status add_faces(const cwi_ray_target *target, double shift, cwi_text_place *places,
                            size_t *count, cw_error *err)
 {
     face_table table = {.capacity = 16};
@@ -168,7 +168,7 @@ static cw_status add_faces(const cwi_target *target, double shift, cwi_text_plac
 }
 
 /* Adds a point for each equal part of the area. */
-static void add_points(const cwi_target *target, cwi_text_place *places, size_t *count)
+static void add_points(const cwi_ray_target *target, cwi_text_place *places, size_t *count)
 {
     double whole = 0, sum = 0;
     for (size_t t = 0; t < target->mesh->triangle_count; t++)
@@ -197,7 +197,7 @@ static void add_points(const cwi_target *target, cwi_text_place *places, size_t 
 
 /* Adds the points of the surface that are before the middle of the box: along a direction, or along the axes, from the
  * front first. */
-static void add_middles(const cwi_target *target, const double *direction,
+static void add_middles(const cwi_ray_target *target, const double *direction,
                         cwi_text_place *places, size_t *count)
 {
     static const double axes[MIDDLES][3] = {{0, -1, 0}, {1, 0, 0}, {-1, 0, 0},
@@ -215,7 +215,7 @@ static void add_middles(const cwi_target *target, const double *direction,
     }
 }
 
-cw_status cwi_list_places(const cwi_target *target, const double *direction,
+cw_status cwi_list_places(const cwi_ray_target *target, const double *direction,
                           cwi_text_place **places, size_t *count, cw_error *err)
 {
     *count = 0;

@@ -31,7 +31,7 @@ void cwi_set_frame(cwi_text_place *place)
 
 /* Turns and moves the plane so that it fits the heights of a few points within a box. Returns false where the surface
  * does not cover them. */
-static bool fit_plane(const cwi_target *target, cwi_text_place *place, double half_width,
+static bool fit_plane(const cwi_ray_target *target, cwi_text_place *place, double half_width,
                       double half_height, double reach)
 {
     double sum = 0, tilt[2] = {0}, square[2] = {0};
@@ -74,7 +74,7 @@ static bool visit_points(const cwi_room_for_text *room, double step,
 }
 
 typedef struct look_state {
-    const cwi_target *target;
+    const cwi_ray_target *target;
     const cwi_text_place *place;
     const cwi_room_for_text *room;
     cwi_place_look *look;
@@ -130,7 +130,7 @@ static void center_plane(look_state *s, cwi_text_place *place)
     s->low = s->high = 0;
 }
 
-cwi_place_look cwi_look_at_place(const cwi_target *target, cwi_text_place *place,
+cwi_place_look cwi_look_at_place(const cwi_ray_target *target, cwi_text_place *place,
                                  const cwi_room_for_text *room, double step)
 {
     cwi_place_look look = {.result = CWI_PLACE_ENDS, .thickness = INFINITY};

@@ -11,8 +11,8 @@
 static const double STEEP_DEG = 65;
 
 /* Finds the height of the surface at each point of the region. */
-static cw_status find_heights(const cwi_target *target, const cwi_text_place *place,
-                              const cwi_region *region, double reach, double *heights,
+static cw_status find_heights(const cwi_ray_target *target, const cwi_text_place *place,
+                              const cwi_stroke_region *region, double reach, double *heights,
                               cw_error *err)
 {
     for (size_t n = 0; n < region->point_count; n++) {
@@ -40,7 +40,7 @@ static cw_status find_heights(const cwi_target *target, const cwi_text_place *pl
     return CW_OK;
 }
 
-static void place_sheets(const cwi_text_place *place, const cwi_region *region,
+static void place_sheets(const cwi_text_place *place, const cwi_stroke_region *region,
                          const double *heights, double below, double above, cw_mesh *tool)
 {
     for (size_t n = 0; n < 2 * region->point_count; n++) {
@@ -53,7 +53,7 @@ static void place_sheets(const cwi_text_place *place, const cwi_region *region,
     }
 }
 
-static void join_sheets(const cwi_region *region, cw_mesh *tool)
+static void join_sheets(const cwi_stroke_region *region, cw_mesh *tool)
 {
     const uint32_t down = (uint32_t)region->point_count;
     uint32_t *out = tool->triangles;
@@ -69,9 +69,9 @@ static void join_sheets(const cwi_region *region, cw_mesh *tool)
     }
 }
 
-cw_status cwi_make_letters(const cwi_target *target, const cwi_text_place *place,
-                           const cwi_region *region, double below, double above, double reach,
-                           cw_mesh *tool, cw_error *err)
+cw_status cwi_make_letters(const cwi_ray_target *target, const cwi_text_place *place,
+                           const cwi_stroke_region *region, double below, double above,
+                           double reach, cw_mesh *tool, cw_error *err)
 {
     *tool = (cw_mesh){0};
     double *heights = cwi_alloc_array(region->point_count, sizeof *heights);

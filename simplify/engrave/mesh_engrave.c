@@ -70,7 +70,7 @@ static void fill_facts(const cw_mesh *mesh, const cwi_text_lines *lines,
                        const cwi_placed_text *placed, cw_engrave_facts *facts)
 {
     const cwi_text_size *t = &placed->size;
-    const cwi_region *r = &placed->region;
+    const cwi_stroke_region *r = &placed->region;
     double area = 0;
     for (size_t n = 0; n < r->triangle_count; n++) {
         const double *a = r->points[r->triangles[n][0]], *b = r->points[r->triangles[n][1]],
@@ -104,7 +104,7 @@ cw_status cw_mesh_engrave(const cw_mesh *mesh, const cw_engrave_desc *desc, cw_m
     CWI_REQUIRE_VERSION(err, desc, 0);
     CWI_REQUIRE_VERSION(err, facts, 0);
     cwi_text_lines lines = {0};
-    cwi_target target = {0};
+    cwi_ray_target target = {0};
     cwi_placed_text placed = {0};
     *out = (cw_mesh){0};
     cw_status st = cwi_mesh_check_size(mesh, "engraved", err);
@@ -115,7 +115,7 @@ cw_status cw_mesh_engrave(const cw_mesh *mesh, const cw_engrave_desc *desc, cw_m
     if (st == CW_OK && mesh->triangle_count == 0)
         st = cwi_fail(err, CW_ERR_EMPTY, "the mesh has no triangles");
     if (st == CW_OK)
-        st = cwi_target_build(&target, mesh, err);
+        st = cwi_ray_target_build(&target, mesh, err);
     if (st == CW_OK)
         st = cwi_place_text(&target, &lines, desc, &placed, err);
     if (st == CW_OK)
@@ -125,7 +125,7 @@ cw_status cw_mesh_engrave(const cw_mesh *mesh, const cw_engrave_desc *desc, cw_m
     if (st == CW_OK && facts)
         fill_facts(mesh, &lines, &placed, facts);
     cwi_free_placed(&placed);
-    cwi_target_free(&target);
+    cwi_ray_target_free(&target);
     cwi_free_text_lines(&lines);
     if (st != CW_OK)
         cw_mesh_free(out);

@@ -15,7 +15,7 @@ static const double BESIDE = 1e-9;
 static const double START = 1e-6;
 
 typedef struct ray {
-    const cwi_target *target;
+    const cwi_ray_target *target;
     double from[3], vector[3];
     double wanted;   /* the fraction of the vector that the hit is to be next to */
     double least;    /* hits before this fraction do not count */
@@ -65,8 +65,9 @@ static bool visit_triangle(void *context, size_t slot)
     return true;
 }
 
-static ray cast_ray(const cwi_target *target, const double from[3], const double direction[3],
-                    double length, double wanted, double least, bool faces_only)
+static ray cast_ray(const cwi_ray_target *target, const double from[3],
+                    const double direction[3], double length, double wanted, double least,
+                    bool faces_only)
 {
     ray r = {.target = target,
              .wanted = wanted,
@@ -81,11 +82,11 @@ static ray cast_ray(const cwi_target *target, const double from[3], const double
     return r;
 }
 
-cw_status cwi_target_build(cwi_target *target, const cw_mesh *mesh, cw_error *err)
+cw_status cwi_ray_target_build(cwi_ray_target *target, const cw_mesh *mesh, cw_error *err)
 {
     double low[3], high[3];
     float max = 0;
-    *target = (cwi_target){.mesh = mesh};
+    *target = (cwi_ray_target){.mesh = mesh};
     cwi_box_clear(low, high);
     cwi_box_add_points(low, high, mesh->positions, mesh->vertex_count);
     cwi_midpoint(low, high, target->middle);
@@ -97,21 +98,21 @@ cw_status cwi_target_build(cwi_target *target, const cw_mesh *mesh, cw_error *er
                                     mesh->triangles, mesh->triangle_count, err);
 }
 
-void cwi_target_free(cwi_target *target)
+void cwi_ray_target_free(cwi_ray_target *target)
 {
     cwi_boxes_free(&target->tree);
 }
 
-double cwi_cast_along(const cwi_target *target, const double from[3], const double direction[3],
-                      double reach)
+double cwi_cast_along(const cwi_ray_target *target, const double from[3],
+                      const double direction[3], double reach)
 {
     const double least = START * target->diagonal / reach;
     const ray r = cast_ray(target, from, direction, reach, 0, least, false);
     return r.found * reach;
 }
 
-bool cwi_find_height(const cwi_target *target, const cwi_text_place *place, double x, double y,
-                     double reach, double *height, double *lean)
+bool cwi_find_height(const cwi_ray_target *target, const cwi_text_place *place, double x,
+                     double y, double reach, double *height, double *lean)
 {
     double from[3], down[3];
     for (int a = 0; a < 3; a++) {

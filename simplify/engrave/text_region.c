@@ -58,7 +58,7 @@ static void draw_stroke(field_grid *g, const cwi_stroke *s, double radius)
 
 /* Returns the number of a point of the grid (kind 0), or of the border's point on its edge to the next column (1) or row
  * (2). UINT32_MAX when memory is out. */
-static uint32_t find_point(field_grid *g, cwi_region *r, size_t node, int kind)
+static uint32_t find_point(field_grid *g, cwi_stroke_region *r, size_t node, int kind)
 {
     uint32_t *number = &g->point[3 * node + (size_t)kind];
     if (*number != UINT32_MAX)
@@ -81,7 +81,8 @@ static uint32_t find_point(field_grid *g, cwi_region *r, size_t node, int kind)
 }
 
 /* Adds a convex polygon. is_cut: of its points, those on the border */
-static bool add_polygon(cwi_region *r, const uint32_t *points, const bool *is_cut, size_t count)
+static bool add_polygon(cwi_stroke_region *r, const uint32_t *points, const bool *is_cut,
+                        size_t count)
 {
     for (size_t n = 0; n < count; n++) {
         const size_t next = (n + 1) % count;
@@ -108,7 +109,7 @@ static bool add_polygon(cwi_region *r, const uint32_t *points, const bool *is_cu
 }
 
 /* Cuts a cell. Opposite corners that alone are inside stay apart. */
-static bool cut_cell(field_grid *g, cwi_region *r, size_t node)
+static bool cut_cell(field_grid *g, cwi_stroke_region *r, size_t node)
 {
     const size_t corner[4] = {node, node + 1, node + 1 + g->columns, node + g->columns};
     const size_t edge[4] = {node, node + 1, node + g->columns, node};
@@ -181,10 +182,10 @@ static cw_status draw_field(field_grid *g, const cwi_text_lines *l, double unit,
 }
 
 cw_status cwi_fill_strokes(const cwi_text_lines *l, double unit, double stroke_mm,
-                           cwi_region *r, cw_error *err)
+                           cwi_stroke_region *r, cw_error *err)
 {
     field_grid g = {0};
-    *r = (cwi_region){0};
+    *r = (cwi_stroke_region){0};
     cw_status st = draw_field(&g, l, unit, stroke_mm, err);
     r->cell = g.cell;
     for (size_t row = 0; row + 1 < g.rows && st == CW_OK; row++)
@@ -196,10 +197,10 @@ cw_status cwi_fill_strokes(const cwi_text_lines *l, double unit, double stroke_m
     return st;
 }
 
-void cwi_free_region(cwi_region *r)
+void cwi_free_stroke_region(cwi_stroke_region *r)
 {
     cwi_free(r->points);
     cwi_free(r->triangles);
     cwi_free(r->border);
-    *r = (cwi_region){0};
+    *r = (cwi_stroke_region){0};
 }

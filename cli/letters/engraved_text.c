@@ -1,5 +1,5 @@
 /* Fills in and tells about text for solids. */
-#include "cli/inputs/engrave_options.h"
+#include "cli/letters/engraved_text.h"
 
 #include "cli/framework/console.h"
 #include "cli/framework/name_template.h"
@@ -13,7 +13,7 @@
 /* Strokes below this are finer than what most nozzles print. */
 static const double NOZZLE_MM = 0.4;
 
-/* Surfaces that lean more within the text are told to be curved. */
+/* A note follows where the surface leans more than this within the text. */
 static const double CURVED_DEG = 10;
 
 cw_status cli_fill_engraved_text(const char *text, const char *input, const char *name,

@@ -1,6 +1,6 @@
 /* Text for solids: templates as they are typed, filled in, and the facts for the line and the report. */
-#ifndef CLI_INPUTS_ENGRAVE_OPTIONS_H
-#define CLI_INPUTS_ENGRAVE_OPTIONS_H
+#ifndef CLI_LETTERS_ENGRAVED_TEXT_H
+#define CLI_LETTERS_ENGRAVED_TEXT_H
 
 #include "cli/framework/json_writer.h"
 
