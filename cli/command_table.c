@@ -13,26 +13,8 @@
 #include "cli/voxels/cmd_voxelize.h"
 #include "cli/window/panels.h"
 
-const cli_command *const cli_command_table[] = {&cli_extract,
-                                                &cli_join,
-                                                &cli_simplify,
-                                                &cli_smooth,
-                                                &cli_remesh,
-                                                &cli_boolean,
-                                                &cli_cut,
-                                                &cli_repair,
-                                                &cli_uv,
-                                                &cli_convert,
-                                                &cli_hollow,
-                                                &cli_offset,
-                                                &cli_voxelize,
-                                                &cli_check,
-                                                &cli_info,
-                                                &cli_render,
-                                                &cli_report_command,
-                                                &cli_view,
-                                                &cli_make,
-                                                &cli_formats,
-                                                &cli_help,
-                                                &cli_version,
-                                                NULL};
+const cli_command *const cli_command_table[] = {
+    &cli_extract, &cli_join,     &cli_simplify, &cli_smooth, &cli_remesh,  &cli_boolean,
+    &cli_cut,     &cli_engrave,  &cli_repair,   &cli_uv,     &cli_convert, &cli_hollow,
+    &cli_offset,  &cli_voxelize, &cli_check,    &cli_info,   &cli_render,  &cli_report_command,
+    &cli_view,    &cli_make,     &cli_formats,  &cli_help,   &cli_version, NULL};

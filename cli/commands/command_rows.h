@@ -4,7 +4,7 @@
 
 #include "cli/framework/commands.h"
 
-extern const cli_command cli_boolean, cli_convert, cli_formats, cli_hollow, cli_make,
-    cli_offset, cli_remesh, cli_repair, cli_simplify, cli_smooth, cli_uv, cli_version;
+extern const cli_command cli_boolean, cli_convert, cli_engrave, cli_formats, cli_hollow,
+    cli_make, cli_offset, cli_remesh, cli_repair, cli_simplify, cli_smooth, cli_uv, cli_version;
 
 #endif

@@ -97,6 +97,9 @@ static const cli_option options[] = {
      "Cut by a plane, keep what is above, and close it flat: z=5mm, z=10% of the box, -z=5mm keeps "
      "what is below, or x,y,z:nx,ny,nz (off)",
      offsetof(cli_extract_args, cut)},
+    {"engrave", 0, CLI_TEXT, "TEXT",
+     "Engrave a text on the flattest place; may hold {stem} and {parent}; 'engrave' has more (none)",
+     offsetof(cli_extract_args, engrave)},
     {"normals", 0, CLI_CHOICE, "field/none",
      "Vertex normals from the field's gradient, or none (field)",
      offsetof(cli_extract_args, normals)},
@@ -250,6 +253,7 @@ static const cli_rule rules[] = {
     {"profile=game profile=web profile=mobile", CLI_EXCLUDES,
      "labels open cull animate steps pvd snap part parts manifest"},
     {"uv", CLI_EXCLUDES, "animate"},
+    {"engrave", CLI_EXCLUDES, "labels open cull"},
     {"crease-angle", CLI_EXCLUDES, "normals=none"},
     {"orient-print", CLI_EXCLUDES,
      "labels lod animate part parts manifest profile=game profile=web profile=mobile"},

@@ -173,6 +173,8 @@ void cli_extract_put_params(cli_json *j, const void *p, const cli_made *made)
         cli_json_number(j, "close_handles_mm", made->facts.handles.length_mm);
     if (args->cut.given)
         cli_json_text(j, "cut_plane", cli_plane_text(&args->cut));
+    if (args->engrave)
+        cli_json_text(j, "engrave", args->engrave);
     if (args->smooth.given) {
         cli_json_text(j, "smooth", cli_smoothing_text(&args->smooth));
         cli_json_number(j, "max_move_mm",
@@ -229,6 +231,8 @@ size_t cli_extract_provenance(const cli_extract_run *s, size_t n, cli_making *ma
     }
     if (args->cut.given)
         lines[count++] = (cw_provenance){"cut", cli_plane_text(&args->cut)};
+    if (args->engrave)
+        lines[count++] = (cw_provenance){"engraved", args->engrave};
     if (args->pixel.pixels.given)
         snprintf(simplify, sizeof making->simplify, "to %.9g pixels of %zu cameras",
                  args->pixel.pixels.value, s->plan.view_count);

@@ -34,6 +34,7 @@ typedef struct cli_extract_args {
     cli_number crease, orient_print;
     cli_smoothing smooth;
     cli_plane cut;
+    const char *engrave;
     cli_length max_move;
     cli_color_args color;
     int profile; /* CLI_PROFILE_... */
@@ -89,7 +90,7 @@ typedef struct cli_extract_run {
     cli_extract_output output;
 } cli_extract_run;
 
-enum { CLI_EXTRACT_PROVENANCE = 8 };
+enum { CLI_EXTRACT_PROVENANCE = 9 };
 
 /* ---- arguments --------------------------------------------------------------------------- */
 

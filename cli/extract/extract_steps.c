@@ -6,11 +6,15 @@
 #include "cli/inputs/cut_options.h"
 #include "cli/inputs/extract_surface.h"
 #include "cli/inputs/place_options.h"
+#include "cli/letters/engraved_text.h"
 #include "cli/results/detail_levels.h"
 #include "cli/results/mesh_comparison.h"
 #include "cli/results/stage_facts.h"
 #include "core/base/status.h"
 #include "core/volume/volume.h"
+
+#include <stdio.h>
+#include <stdlib.h>
 
 /* The share of pixels that may differ where nothing was to: places of a part of the volume are
  * rounded about another origin. */
@@ -81,6 +85,7 @@ void cli_extract_describe_stages(const cli_extract_args *args, const cli_volume 
         .close_handles = args->handles.given ? &set->handles : NULL,
         .smooth = args->smooth.given ? &set->smooth : NULL,
         .cut = args->cut.given ? &set->cut : NULL,
+        .engrave = args->engrave ? &set->engrave : NULL,
         .cull = args->pixel.cull,
         .atlas = args->texture.uv ? &set->atlas : NULL,
         .bake = cli_find_maps(&args->texture) ? &set->bake : NULL,
@@ -89,6 +94,21 @@ void cli_extract_describe_stages(const cli_extract_args *args, const cli_volume 
         .lod = args->lod.n,
         .lod_count = args->lod.count,
     };
+}
+
+/* Fills in the text that is engraved. */
+static cw_status describe_text(const cli_extract_run *s, cli_surface_settings *set,
+                               cw_error *err)
+{
+    char *text = NULL;
+    const cw_status st =
+        cli_fill_engraved_text(s->args->engrave, s->input.volume.path, NULL, NULL, &text, err);
+    if (st != CW_OK)
+        return cwi_fail_in(err, st, "--engrave");
+    snprintf(set->text, sizeof set->text, "%s", text);
+    set->engrave = (cw_engrave_desc){.text = set->text};
+    free(text);
+    return CW_OK;
 }
 
 cw_status cli_extract_describe(const cli_extract_run *s, double iso, cli_surface_settings *set,
@@ -101,6 +121,10 @@ cw_status cli_extract_describe(const cli_extract_run *s, double iso, cli_surface
     if (st != CW_OK)
         return st;
     cli_extract_describe_stages(args, &s->input.volume, set);
+    if (args->engrave)
+        st = describe_text(s, set, err);
+    if (st != CW_OK)
+        return st;
     d->extract =
         (cw_extract_desc){.isovalue = iso,
                           .inside_is_low = cli_extract_is_low(s),
@@ -300,8 +324,9 @@ cw_status cli_extract_judge(cli_extract_run *s, cli_made *made, const cw_mesh *m
             s->input.volume.path);
         return CW_OK;
     }
-    /* a section is far from the isosurface, as it should be */
-    cw_status st = args->cut.given ? CW_OK : measure_from_field(s, made, mesh, err);
+    /* sections and letters are far from the isosurface, as they should be */
+    cw_status st =
+        args->cut.given || args->engrave ? CW_OK : measure_from_field(s, made, mesh, err);
     return st == CW_OK && is_simplified && !s->plan.view_count && !args->pixel.most.given
                ? measure_from_full(s, made, mesh, err)
                : st;

@@ -7,10 +7,11 @@
 /* The long help of each command: help/NAME.txt, as core/embed.cmake puts it into
  * the program. */
 extern const char cli_page_boolean[], cli_page_check[], cli_page_convert[], cli_page_cut[],
-    cli_page_extract[], cli_page_formats[], cli_page_help[], cli_page_hollow[], cli_page_info[],
-    cli_page_join[], cli_page_make[], cli_page_offset[], cli_page_remesh[], cli_page_render[],
-    cli_page_repair[], cli_page_report[], cli_page_simplify[], cli_page_smooth[], cli_page_uv[],
-    cli_page_version[], cli_page_view[], cli_page_voxelize[];
+    cli_page_engrave[], cli_page_extract[], cli_page_formats[], cli_page_help[],
+    cli_page_hollow[], cli_page_info[], cli_page_join[], cli_page_make[], cli_page_offset[],
+    cli_page_remesh[], cli_page_render[], cli_page_repair[], cli_page_report[],
+    cli_page_simplify[], cli_page_smooth[], cli_page_uv[], cli_page_version[], cli_page_view[],
+    cli_page_voxelize[];
 
 /* Pages of topics. */
 extern const char cli_page_environment[], cli_page_library[];

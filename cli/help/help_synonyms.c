@@ -51,6 +51,8 @@ const cli_synonym cli_synonyms[] = {
     {"union|merge solid|subtract|difference|intersect|csg|carve|unite", "boolean",
      "boolean|--op|repair",
      "'boolean' unites, subtracts and intersects closed meshes, and unites the shells of one."},
+    {"text|letter|lettering|emboss|inscription|font|serial number|mark", "engrave",
+     "engrave|--text|--engrave", "'engrave' cuts text into a closed mesh, or raises it."},
     {"hole|heal|fix|mend|broken", "repair", "repair|--fill|--wrap|--weld", NULL},
     {"watertight|leak", "closed", "closed|repair|--open|--orient|--by|--profile",
      "'repair' closes broken meshes. 'extract' makes closed meshes, 'check' finds open edges, and "

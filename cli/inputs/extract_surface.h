@@ -12,6 +12,8 @@ typedef struct cli_surface_settings {
     cw_close_handles_desc handles;
     cw_smooth_desc smooth;
     cw_cut_desc cut;
+    cw_engrave_desc engrave;
+    char text[4 * CW_ENGRAVE_CHARACTERS + 2]; /* of engrave; longer ones are refused by it */
     cw_simplify_desc simplify;
     cw_atlas_desc atlas;
     cw_bake_desc bake;

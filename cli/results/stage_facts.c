@@ -5,6 +5,7 @@
 #include "cli/framework/console.h"
 #include "cli/framework/quantity.h"
 #include "cli/inputs/cut_options.h"
+#include "cli/letters/engraved_text.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -198,6 +199,19 @@ static void put_cut(cli_json *j, const cw_pipeline_facts *f, double least_mm3)
     cli_json_cut(j, &f->cut);
 }
 
+static void tell_text(const cli_staged *s)
+{
+    cli_tell_engraved(s->subject, &s->facts->engraved);
+}
+
+static void put_text(cli_json *j, const cw_pipeline_facts *f, double least_mm3)
+{
+    (void)least_mm3;
+    cli_json_open(j, "engraved", '{');
+    cli_json_engraved(j, &f->engraved);
+    cli_json_close(j, '}');
+}
+
 static void tell_culling(const cli_staged *s)
 {
     const cw_pipeline_facts *f = s->facts;
@@ -260,6 +274,7 @@ static const struct row {
     {CW_STAGE_HANDLES, tell_handles, put_handles},
     {CW_STAGE_SMOOTH, tell_smoothing, put_smoothing},
     {CW_STAGE_CUT, tell_cut, put_cut},
+    {CW_STAGE_ENGRAVE, tell_text, put_text},
     {CW_STAGE_CULL, tell_culling, NULL},
     {CW_STAGE_COLOR, tell_colors, NULL},
     {CW_STAGE_ATLAS, tell_atlas, put_atlas},

@@ -1,4 +1,5 @@
-/* The stages that move or cut the surface: closed handles, smoothing, and the cut by a plane. */
+/* The stages that move or cut the surface: closed handles, smoothing, the cut by a plane, and
+ * text. */
 #include "core/base/status.h"
 #include "extract/pipeline/stages.h"
 
@@ -34,5 +35,19 @@ cw_status cwi_cut_surface(cwi_pipeline *p, cw_mesh *mesh, cw_error *err)
         return cwi_fail_in(err, st, "cut_plane");
     cw_mesh_free(mesh);
     *mesh = cut;
+    return CW_OK;
+}
+
+cw_status cwi_engrave_surface(cwi_pipeline *p, cw_mesh *mesh, cw_error *err)
+{
+    cw_engrave_desc desc = *p->desc->engrave;
+    cw_mesh engraved;
+    desc.threads = p->desc->extract.threads;
+    desc.progress = cwi_begin_stage(p, CW_STAGE_ENGRAVE, mesh->triangle_count, "triangle");
+    cw_status st = cw_mesh_engrave(mesh, &desc, &engraved, &p->facts.engraved, err);
+    if (st != CW_OK)
+        return cwi_fail_in(err, st, "engrave");
+    cw_mesh_free(mesh);
+    *mesh = engraved;
     return CW_OK;
 }

@@ -45,6 +45,11 @@ static bool wants_cut(const cw_pipeline_desc *d)
     return d->cut != NULL;
 }
 
+static bool wants_text(const cw_pipeline_desc *d)
+{
+    return d->engrave != NULL;
+}
+
 static bool wants_simplification(const cw_pipeline_desc *d)
 {
     return d->simplify != NULL;
@@ -113,6 +118,7 @@ const cwi_stage cwi_recipe[CW_STAGE_COUNT] = {
     {CW_STAGE_HANDLES,    wants_handles_closed, WHOLE | CLOSED, NORMALS, false, cwi_close_handles},
     {CW_STAGE_SMOOTH,     wants_smoothing,      WHOLE | CLOSED, NORMALS, false, cwi_smooth},
     {CW_STAGE_CUT,        wants_cut,            WHOLE | CLOSED, NORMALS, false, cwi_cut_surface},
+    {CW_STAGE_ENGRAVE,    wants_text,           WHOLE | CLOSED, NORMALS, false, cwi_engrave_surface},
     {CW_STAGE_SIMPLIFY,   wants_simplification, LABELS,         0,       false, cwi_simplify_surface},
     {CW_STAGE_CULL,       wants_culling,        WHOLE | VOXELS, OPEN,    false, cwi_cull_surface},
     {CW_STAGE_LOD,        wants_levels,         WHOLE | LABELS, 0,       false, cwi_make_levels},

@@ -103,6 +103,7 @@ cw_status cwi_fill_voids(cwi_pipeline *p, cw_mesh *mesh, cw_error *err);
 cw_status cwi_close_handles(cwi_pipeline *p, cw_mesh *mesh, cw_error *err);
 cw_status cwi_smooth(cwi_pipeline *p, cw_mesh *mesh, cw_error *err);
 cw_status cwi_cut_surface(cwi_pipeline *p, cw_mesh *mesh, cw_error *err);
+cw_status cwi_engrave_surface(cwi_pipeline *p, cw_mesh *mesh, cw_error *err);
 cw_status cwi_simplify_surface(cwi_pipeline *p, cw_mesh *mesh, cw_error *err);
 cw_status cwi_cull_surface(cwi_pipeline *p, cw_mesh *mesh, cw_error *err);
 cw_status cwi_make_levels(cwi_pipeline *p, cw_mesh *mesh, cw_error *err);

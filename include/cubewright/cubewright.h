@@ -12,6 +12,7 @@
 #include <cubewright/core.h>
 #include <cubewright/cut.h>
 #include <cubewright/distance.h>
+#include <cubewright/engrave.h>
 #include <cubewright/extract.h>
 #include <cubewright/field.h>
 #include <cubewright/filter.h>

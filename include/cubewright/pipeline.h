@@ -6,6 +6,7 @@
 #include <cubewright/bake.h>
 #include <cubewright/color.h>
 #include <cubewright/cut.h>
+#include <cubewright/engrave.h>
 #include <cubewright/extract.h>
 #include <cubewright/handles.h>
 #include <cubewright/labels.h>
@@ -19,9 +20,9 @@ extern "C" {
 #endif
 
 /* The stages: constant, and name. They run in this order, but that handles are closed between
- * CW_STAGE_FILL_VOIDS and CW_STAGE_SMOOTH, texture coordinates are made between CW_STAGE_LOD and
- * CW_STAGE_NORMALS, which parts at creases next, and maps are baked between CW_STAGE_COLOR and CW_STAGE_CHECK. One that a later version
- * adds gets the next number, wherever it runs. */
+ * CW_STAGE_FILL_VOIDS and CW_STAGE_SMOOTH, text is engraved between CW_STAGE_CUT and CW_STAGE_SIMPLIFY, texture
+ * coordinates are made between CW_STAGE_LOD and CW_STAGE_NORMALS, which parts at creases next, and maps are baked
+ * between CW_STAGE_COLOR and CW_STAGE_CHECK. One that a later version adds gets the next number, wherever it runs. */
 #define CW_STAGE_TABLE(X)                                                                      \
     X(CW_STAGE_VIEWS, "camera")                                                                \
     X(CW_STAGE_EXTRACT, "extract")                                                             \
@@ -39,7 +40,8 @@ extern "C" {
     X(CW_STAGE_HANDLES, "close_handles")                                                       \
     X(CW_STAGE_ATLAS, "uv")                                                                    \
     X(CW_STAGE_MAPS, "maps")                                                                   \
-    X(CW_STAGE_CREASES, "crease_angle")
+    X(CW_STAGE_CREASES, "crease_angle")                                                        \
+    X(CW_STAGE_ENGRAVE, "engrave")
 
 /* Identifies a stage. */
 typedef enum cw_stage {
@@ -114,6 +116,7 @@ typedef struct cw_pipeline_desc {
     double
         crease_degrees; /* let normals part at edges with a larger angle: cw_mesh_crease_normals() */
     bool crease_caps; /* the same where caps close the surface at the end of the volume */
+    const cw_engrave_desc *engrave; /* engrave a text; its threads and progress are not used */
 } cw_pipeline_desc;
 
 /* Results of the stages that ran; those of others are zero. Zero-initialise the struct before it is
@@ -135,7 +138,8 @@ typedef struct cw_pipeline_facts {
     cw_close_handles_facts handles; /* CW_STAGE_HANDLES */
     cw_atlas_facts atlas;           /* CW_STAGE_ATLAS: of the surface, or of all levels */
     cw_bake_facts baked;            /* CW_STAGE_MAPS: the same */
-    size_t creases; /* edges: CW_STAGE_CREASES, of the surface given away last */
+    size_t creases;            /* edges: CW_STAGE_CREASES, of the surface given away last */
+    cw_engrave_facts engraved; /* CW_STAGE_ENGRAVE */
 } cw_pipeline_facts;
 
 /* A finished surface, or a level of detail. */
@@ -179,7 +183,7 @@ CW_NODISCARD CW_API cw_status cw_pipeline_check(cw_surface_source source, unsign
  * ask for, and gives the result away: one surface, or each level of detail.
  *
  * Where it can, a surface is simplified slab by slab while it is extracted, and is never whole.
- * A simplified surface gets normals of the field, unless it was smoothed or cut, or
+ * A simplified surface gets normals of the field, unless it was smoothed, cut or engraved, or
  * its handles were closed. Levels of detail share the square of their texture coordinates, each with
  * half of the texels for a mm of the one before, and so their maps. With maps their triangles go where
  * normals bend, too (cw_simplify_desc.normal_weight).

@@ -19,6 +19,7 @@ from ._boolean import Combined, boolean
 from ._check import Check, Verdict, check, report
 from ._color import color_by
 from ._cut import Cut, cut
+from ._engrave import Engraved, engrave
 from ._errors import Error, Status
 from ._extract import Extractor, LabelSurfaces, Patch, Settings, extract, extract_labels, extract_levels
 from ._handles import Closed, close_handles
@@ -48,6 +49,7 @@ __all__ = [
     "Closed",
     "Combined",
     "Cut",
+    "Engraved",
     "Error",
     "Extractor",
     "Feature",
@@ -89,6 +91,7 @@ __all__ = [
     "crease_normals",
     "cut",
     "cut_pieces",
+    "engrave",
     "extract",
     "extract_labels",
     "extract_levels",

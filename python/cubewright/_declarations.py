@@ -50,6 +50,7 @@ CW_APPEARANCE_MAX_SIZE = 4096
 CW_APPEARANCE_MAX_VIEWS = 64
 CW_CAP_ANGLE_DEG = 160.0
 CW_CORNER_NORMALS = 'corner_normals'
+CW_ENGRAVE_CHARACTERS = 400
 CW_EXTRACT_MAX_SNAP = 0.5
 CW_FACE_COLORS = 'face_colors'
 CW_FEM_MAX_ASPECT = 10.0
@@ -384,7 +385,8 @@ class cw_stage(enum.IntEnum):
     CW_STAGE_ATLAS = 14
     CW_STAGE_MAPS = 15
     CW_STAGE_CREASES = 16
-    CW_STAGE_COUNT = 17
+    CW_STAGE_ENGRAVE = 17
+    CW_STAGE_COUNT = 18
 
 
 class cw_surface_source(enum.IntEnum):
@@ -1779,6 +1781,74 @@ cw_cut_facts._fields_ = [
     ("loops_open", c_size_t),
     ("area_mm2", c_double),
     ("moved_mm", c_double),
+]
+
+
+class cw_engrave_desc(Structure):
+    version: int
+    text: bytes | None
+    size_mm: float
+    depth_mm: float
+    stroke_mm: float
+    wall_mm: float
+    emboss: bool
+    has_at: bool
+    at: Any
+    direction: Any
+    threads: int
+    progress: Any
+
+
+cw_engrave_desc._fields_ = [
+    ("version", c_uint32),
+    ("text", c_char_p),
+    ("size_mm", c_double),
+    ("depth_mm", c_double),
+    ("stroke_mm", c_double),
+    ("wall_mm", c_double),
+    ("emboss", c_bool),
+    ("has_at", c_bool),
+    ("at", c_double * 3),
+    ("direction", c_double * 3),
+    ("threads", c_int),
+    ("progress", cw_progress),
+]
+
+
+class cw_engrave_facts(Structure):
+    version: int
+    center: Any
+    normal: Any
+    right: Any
+    size_mm: float
+    stroke_mm: float
+    depth_mm: float
+    wall_mm: float
+    width_mm: float
+    height_mm: float
+    deviation_mm: float
+    lean_deg: float
+    thickness_mm: float
+    volume_mm3: float
+    characters: int
+
+
+cw_engrave_facts._fields_ = [
+    ("version", c_uint32),
+    ("center", c_double * 3),
+    ("normal", c_double * 3),
+    ("right", c_double * 3),
+    ("size_mm", c_double),
+    ("stroke_mm", c_double),
+    ("depth_mm", c_double),
+    ("wall_mm", c_double),
+    ("width_mm", c_double),
+    ("height_mm", c_double),
+    ("deviation_mm", c_double),
+    ("lean_deg", c_double),
+    ("thickness_mm", c_double),
+    ("volume_mm3", c_double),
+    ("characters", c_size_t),
 ]
 
 
@@ -3604,6 +3674,7 @@ class cw_pipeline_desc(Structure):
     bake: Any
     crease_degrees: float
     crease_caps: bool
+    engrave: Any
 
 
 cw_pipeline_desc._fields_ = [
@@ -3630,6 +3701,7 @@ cw_pipeline_desc._fields_ = [
     ("bake", POINTER(cw_bake_desc)),
     ("crease_degrees", c_double),
     ("crease_caps", c_bool),
+    ("engrave", POINTER(cw_engrave_desc)),
 ]
 
 
@@ -3653,6 +3725,7 @@ class cw_pipeline_facts(Structure):
     atlas: Any
     baked: Any
     creases: int
+    engraved: Any
 
 
 cw_pipeline_facts._fields_ = [
@@ -3675,6 +3748,7 @@ cw_pipeline_facts._fields_ = [
     ("atlas", cw_atlas_facts),
     ("baked", cw_bake_facts),
     ("creases", c_size_t),
+    ("engraved", cw_engrave_facts),
 ]
 
 
@@ -4181,6 +4255,7 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "cw_mesh_sample": (c_int, [POINTER(cw_mesh), POINTER(cw_volume), POINTER(cw_sample_desc), POINTER(cw_sample_facts), POINTER(cw_error)]),
     "cw_mesh_color": (c_int, [POINTER(cw_mesh), c_int, c_double, c_double, POINTER(cw_error)]),
     "cw_mesh_cut": (c_int, [POINTER(cw_mesh), POINTER(cw_cut_desc), POINTER(cw_mesh), POINTER(cw_cut_facts), POINTER(cw_error)]),
+    "cw_mesh_engrave": (c_int, [POINTER(cw_mesh), POINTER(cw_engrave_desc), POINTER(cw_mesh), POINTER(cw_engrave_facts), POINTER(cw_error)]),
     "cw_field_name": (c_char_p, [c_int]),
     "cw_field_about": (c_char_p, [c_int]),
     "cw_field_isovalue": (c_double, [c_int]),

@@ -16,6 +16,7 @@ from . import _declarations as c
 from ._atlas import MAPS, describe_atlas, take_maps
 from ._color import COLORMAPS
 from ._cut import describe_cut
+from ._engrave import describe_text
 from ._errors import Error, Status, call
 from ._handles import describe_handles
 from ._library import lib
@@ -67,6 +68,7 @@ class Settings:
     close_handles: float | str | None = None
     smooth: str | dict[str, Any] | None = None
     cut_plane: tuple[Sequence[float], Sequence[float]] | None = None
+    engrave: str | dict[str, Any] | None = None
     simplify: int | float | str | None = None
     uv: bool | dict[str, Any] = False
     crease_angle: float | str | None = None
@@ -107,6 +109,9 @@ class Settings:
         if self.cut_plane is not None:
             point, normal = self.cut_plane
             desc.cut = pointer(describe_cut(point, normal))
+        if self.engrave is not None:
+            engraved = {"text": self.engrave} if isinstance(self.engrave, str) else self.engrave
+            desc.engrave = pointer(describe_text(**engraved))
         if isinstance(self.simplify, (float, str)):
             error = take_length("simplify", self.simplify, volume=source)
             desc.simplify = pointer(c.cw_simplify_desc(error_mm=error))
@@ -139,6 +144,7 @@ def extract(
     close_handles: float | str | None = None,
     smooth: str | dict[str, Any] | None = None,
     cut_plane: tuple[Sequence[float], Sequence[float]] | None = None,
+    engrave: str | dict[str, Any] | None = None,
     simplify: int | float | str | None = None,
     uv: bool | dict[str, Any] = False,
     crease_angle: float | str | None = None,
@@ -173,6 +179,7 @@ def extract(
                 close_handles()
     smooth      a method, or a dict of the keywords of smooth(): {"method": "hc", "iterations": 5}
     cut_plane   (point, normal) as of cut(): what is above stays, and is closed flat
+    engrave     a text, or a dict of the keywords of engrave(): {"text": "L", "size": "5mm", "at": (0, 0, 10)}
     simplify    a float: error limit in mm; a text: the same with its unit, "0.1mm" or "0.5vox"; an int:
                 triangle count. See simplify()
     uv          make texture coordinates: True, or a dict of the keywords of atlas(): {"size": 1024}

@@ -385,16 +385,33 @@ static void walk_island(walk *k, uint32_t cell, uint32_t *stack, uint32_t *ways)
     }
 }
 
-/* Finds a cell of an island that is seen from outside: tries lines through points of its triangles. */
+/* Returns true if a triangle lies along x: lines through its points tell nothing. */
+static bool lies_along(const cwi_soup *s, const uint32_t v[3])
+{
+    cwi_wide d[2][2];
+    for (int k = 0; k < 2; k++)
+        for (int a = 0; a < 2; a++)
+            d[k][a] = (cwi_wide)s->vertices[v[k + 1]][a + 1] - s->vertices[v[0]][a + 1];
+    return d[0][0] * d[1][1] == d[0][1] * d[1][0];
+}
+
+/* Finds a cell of an island that is seen from outside: tries lines through points of its triangles, but for those
+ * along x, which may be all but a few. */
 static bool find_outside(hits *h, const uint32_t *triangles, size_t count, uint32_t island,
                          uint32_t *cell)
 {
     enum { TRIES = 4096 };
     const cwi_soup *s = h->w->s;
     uint32_t random = 12345;
-    for (size_t n = 0, tries = 0; tries < TRIES; n = (n + 1) % count, tries++) {
+    for (size_t n = 0, tries = 0; tries < TRIES; n++) {
+        if (n == count && tries == 0)
+            return false;
+        n %= count;
         const uint32_t *v = s->triangles[triangles[n]];
         cwi_wide weights[3];
+        if (lies_along(s, v))
+            continue;
+        tries++;
         h->line = (line){0, 0, 0};
         for (int k = 0; k < 3; k++) {
             random = random * 1664525u + 1013904223u;

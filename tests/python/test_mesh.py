@@ -395,6 +395,31 @@ class Coordinates(Case):
             cw.cut_pieces(ball, planes, progress=lambda *_: False)
         self.assertRaises(TypeError, lambda: cw.cut_pieces(ball, planes, pegs=1.5))
 
+    def test_text_is_engraved(self):
+        ball = cw.extract(make_ball(), 0)
+        size = float(np.ptp(ball.vertices, axis=0).max())
+        cut = cw.engrave(ball, "No. 1")
+        self.assertIsInstance(cut, cw.Engraved)
+        self.assertTrue(cw.check(cut.mesh, profile="basic").holds)
+        self.assertGreater(cut.volume, 0)
+        self.assertLess(abs(cut.right[2]), 1e-9)
+        low, high = ball.vertices.min(axis=0) + ball.origin, ball.vertices.max(axis=0) + ball.origin
+        top = tuple((low + high) / 2 + (0, 0, size))
+        raised = cw.engrave(ball, "+", size=size / 8, at=top, emboss=True, threads=2)
+        self.assertGreater(raised.normal[2], 0.99)
+        self.assertAlmostEqual(raised.depth, size / 64)
+        self.assertGreater(raised.mesh.vertices[:, 2].max(), ball.vertices[:, 2].max())
+        while_made = cw.extract(make_ball(), 0, engrave={"text": "No. 1"})
+        self.assertEqual(len(while_made.triangles), len(cut.mesh.triangles))
+        self.assertIn("engrave", while_made.facts["ran"])
+        with self.fails(cw.Status.ARGUMENT):
+            cw.engrave(ball, "\u4711")
+        with self.fails(cw.Status.CHECK):
+            cw.engrave(ball, "far too large", size=size)
+        with self.fails(cw.Status.CANCELLED):
+            cw.engrave(ball, "1", progress=lambda *_: False)
+        self.assertRaises(TypeError, lambda: cw.engrave(ball, 5))
+
     def test_boolean_adds_up(self):
         ball = cw.extract(make_ball(), 0)
         size = float(np.ptp(ball.vertices, axis=0).max())

@@ -4,6 +4,8 @@
 #ifndef VIEWER_IMAGE_STROKES_H
 #define VIEWER_IMAGE_STROKES_H
 
+#include "core/font/stroke_font.h"
+
 #include <cubewright/picture.h>
 
 #ifdef __cplusplus
@@ -15,11 +17,6 @@ typedef struct cwi_pen {
     double width;    /* of strokes */
     double color[4]; /* sRGB and opacity */
 } cwi_pen;
-
-/* A line between two points. */
-typedef struct cwi_stroke {
-    double from[2], to[2];
-} cwi_stroke;
 
 /* Draws strokes as one figure: where several meet, the pixel is covered once. */
 void cwi_pen_draw(const cwi_pen *pen, const cwi_stroke *strokes, size_t count);
@@ -40,12 +37,6 @@ void cwi_pen_text(const cwi_pen *pen, double x, double y, double height, const c
 void cwi_text_write(cw_image *image, const double at[2], double height, double anchor,
                     const double color[4], const double halo[4], const char *text);
 double cwi_text_width(double height, const char *text);
-
-/* Finds the strokes of a character, in sixths of the height of capitals, y down from their top;
- * returns their number (at most as many as fit), and the character's width. 0 for a character
- * that the font does not have. */
-enum { CWI_GLYPH_STROKES = 24 };
-size_t cwi_glyph(uint32_t character, cwi_stroke strokes[CWI_GLYPH_STROKES], double *width);
 
 #ifdef __cplusplus
 }

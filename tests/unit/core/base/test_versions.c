@@ -22,6 +22,7 @@ static void versions_come_first(void **state)
         {PLACE(cw_remesh_desc)},   {PLACE(cw_repair_desc)},     {PLACE(cw_crossings_desc)},
         {PLACE(cw_simplify_desc)}, {PLACE(cw_smooth_desc)},     {PLACE(cw_slice_filter_desc)},
         {PLACE(cw_stream_desc)},   {PLACE(cw_spool_drop_desc)}, {PLACE(cw_pipeline_desc)},
+        {PLACE(cw_engrave_desc)},
     };
     for (size_t n = 0; n < sizeof offsets / sizeof *offsets; n++) {
         assert_int_equal(offsets[n][0], 0);

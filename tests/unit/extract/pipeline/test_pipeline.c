@@ -499,7 +499,11 @@ static void labels_are_simplified_together_and_given_away_apart(void **state)
 
 /* --- rules ---------------------------------------------------------------------------------- */
 
-enum { TEXTURE = 1u << CW_STAGE_ATLAS | 1u << CW_STAGE_MAPS, CREASES = 1u << CW_STAGE_CREASES };
+enum {
+    TEXTURE = 1u << CW_STAGE_ATLAS | 1u << CW_STAGE_MAPS,
+    CREASES = 1u << CW_STAGE_CREASES,
+    TEXT = 1u << CW_STAGE_ENGRAVE
+};
 
 /* Stages that a source excludes, by themselves. */
 static const struct excluded {
@@ -510,16 +514,17 @@ static const struct excluded {
     {CW_SOURCE_SLICES, 1u << CW_STAGE_VIEWS | 1u << CW_STAGE_LARGEST |
                            1u << CW_STAGE_FILL_VOIDS | 1u << CW_STAGE_HANDLES |
                            1u << CW_STAGE_SMOOTH | 1u << CW_STAGE_CUT | 1u << CW_STAGE_CULL |
-                           1u << CW_STAGE_LOD | 1u << CW_STAGE_COLOR | TEXTURE | CREASES},
+                           1u << CW_STAGE_LOD | 1u << CW_STAGE_COLOR | TEXTURE | CREASES |
+                           TEXT},
     {CW_SOURCE_PARTS, 1u << CW_STAGE_VIEWS | 1u << CW_STAGE_LARGEST |
                           1u << CW_STAGE_FILL_VOIDS | 1u << CW_STAGE_HANDLES |
                           1u << CW_STAGE_SMOOTH | 1u << CW_STAGE_CUT | 1u << CW_STAGE_CULL |
                           1u << CW_STAGE_LOD | 1u << CW_STAGE_COLOR | 1u << CW_STAGE_SIMPLIFY |
-                          TEXTURE | CREASES},
+                          TEXTURE | CREASES | TEXT},
     {CW_SOURCE_LABELS, 1u << CW_STAGE_VIEWS | 1u << CW_STAGE_MIN_VOLUME |
                            1u << CW_STAGE_LARGEST | 1u << CW_STAGE_FILL_VOIDS |
                            1u << CW_STAGE_HANDLES | 1u << CW_STAGE_SMOOTH | 1u << CW_STAGE_CUT |
-                           1u << CW_STAGE_CULL | 1u << CW_STAGE_COLOR | TEXTURE},
+                           1u << CW_STAGE_CULL | 1u << CW_STAGE_COLOR | TEXTURE | TEXT},
     {CW_SOURCE_MESH, 1u << CW_STAGE_VIEWS | 1u << CW_STAGE_CULL},
 };
 
@@ -554,6 +559,7 @@ static void stages_exclude_each_other(void **state)
         {CW_SOURCE_MEMORY, CW_STAGE_CULL, CW_STAGE_HANDLES},
         {CW_SOURCE_MEMORY, CW_STAGE_CULL, CW_STAGE_SMOOTH},
         {CW_SOURCE_MEMORY, CW_STAGE_CULL, CW_STAGE_CUT},
+        {CW_SOURCE_MEMORY, CW_STAGE_CULL, CW_STAGE_ENGRAVE},
         {CW_SOURCE_MEMORY, CW_STAGE_LOD, CW_STAGE_SIMPLIFY},
         {CW_SOURCE_MEMORY, CW_STAGE_LOD, CW_STAGE_VIEWS},
         {CW_SOURCE_SLICES, CW_STAGE_MIN_VOLUME, CW_STAGE_SIMPLIFY},

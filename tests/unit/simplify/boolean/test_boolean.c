@@ -100,6 +100,65 @@ static void boxes_have_their_volumes(void **state)
         }
 }
 
+/* A box between 0 and `size` whose lower and upper faces are n x n squares of two triangles. They come first. */
+static cw_mesh make_plate(size_t n, float size)
+{
+    const size_t row = n + 1, sheet = row * row;
+    cw_mesh m;
+    cw_error err = {0};
+    assert_ok(cwi_mesh_alloc(&m, 2 * sheet, 4 * n * n + 8 * n, false, &err), err);
+    for (size_t v = 0; v < 2 * sheet; v++) {
+        m.positions[3 * v] = size * (float)(v % row) / (float)n;
+        m.positions[3 * v + 1] = size * (float)(v % sheet / row) / (float)n;
+        m.positions[3 * v + 2] = v < sheet ? 0 : size;
+    }
+    uint32_t *t = m.triangles;
+    for (size_t c = 0; c < 2 * n * n; c++) {
+        const uint32_t a = (uint32_t)(c / (n * n) * sheet + c % (n * n) / n * row + c % n);
+        const uint32_t b = a + 1, d = a + (uint32_t)row, e = d + 1;
+        const bool up = c >= n * n;
+        const uint32_t both[6] = {a, up ? b : e, up ? e : b, a, up ? e : d, up ? d : e};
+        memcpy(t, both, sizeof both);
+        t += 6;
+    }
+    for (size_t c = 0; c < 4 * n; c++) { /* around, against the clock seen from above */
+        const size_t k = c % n, side = c / n;
+        const size_t from = side == 0   ? k
+                            : side == 1 ? n + k * row
+                            : side == 2 ? sheet - 1 - k
+                                        : (n - k) * row;
+        const size_t to = side == 0   ? k + 1
+                          : side == 1 ? n + (k + 1) * row
+                          : side == 2 ? sheet - 2 - k
+                                      : (n - k - 1) * row;
+        const uint32_t a = (uint32_t)from, b = (uint32_t)to, d = (uint32_t)(from + sheet),
+                       e = (uint32_t)(to + sheet);
+        const uint32_t both[6] = {a, b, e, a, e, d};
+        memcpy(t, both, sizeof both);
+        t += 6;
+    }
+    return m;
+}
+
+/* Lines along x tell nothing in faces along x, of which there may be any number before the others. */
+static void many_triangles_lie_along_x(void **state)
+{
+    (void)state;
+    static const size_t counts[] = {1, 30, 60};
+    for (int n = 0; n < 3; n++) {
+        cw_mesh plate = make_plate(counts[n], 4), cube = make_box(1, 1, 1, 2),
+                corner = make_box(2, 2, 2, 4);
+        cw_boolean_facts f;
+        assert_true(fabs(check_boolean(&plate, &cube, CW_BOOLEAN_DIFFERENCE, &f) - 56) < 1e-6);
+        assert_true(fabs(check_boolean(&plate, &corner, CW_BOOLEAN_DIFFERENCE, &f) - 56) <
+                    1e-6);
+        assert_true(fabs(check_boolean(&corner, &plate, CW_BOOLEAN_UNION, &f) - 120) < 1e-6);
+        cw_mesh_free(&plate);
+        cw_mesh_free(&cube);
+        cw_mesh_free(&corner);
+    }
+}
+
 enum { GRID = 6, MAX_BOXES = 8 };
 
 /* Counts the cells of a grid that an operation keeps, by the boxes around each: bit n of box n. */
@@ -498,6 +557,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(boxes_have_their_volumes),
+        cmocka_unit_test(many_triangles_lie_along_x),
         cmocka_unit_test(boxes_on_a_grid_have_whole_volumes),
         cmocka_unit_test(boxes_that_touch_may_be_turned),
         cmocka_unit_test(shells_of_one_mesh_are_united),

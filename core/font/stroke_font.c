@@ -1,9 +1,9 @@
 /* A font of strokes, drawn for this library on a grid: capitals and digits stand on rows 0 to
  * 6, small letters on 2 to 6 and down to 8. A figure is lines through points, two digits x and
  * y each; a space starts another line; a point alone is a dot. */
-#include "viewer/image/strokes.h"
+#include "core/font/stroke_font.h"
 
-#include <math.h>
+#include <stdbool.h>
 #include <string.h>
 
 typedef struct glyph {
@@ -99,8 +99,7 @@ static const glyph glyphs[] = {
     {'_', "0747"},
     {'#', "1016 3036 0242 0444"},
     {'~', "05143544"},
-    {0x00b0, "1021120110"},         /* degree */
-    {0x00b0, "1021120110"},         /* degree */
+    {0x00b0, "102031322313020110"}, /* degree */
     {0x00b2, "0010210323"},         /* to the power of two */
     {0x00b5, "0208 05163645 4246"}, /* micro */
     {0x00b7, "0404"},               /* middle dot */
@@ -109,7 +108,6 @@ static const glyph glyphs[] = {
     {0x0394, "06204606"},           /* Delta */
 };
 
-static const double SPACE = 3, GAP = 2;
 static const char missing[] = "0040460600";
 
 static const char *find_glyph(uint32_t character)
@@ -145,6 +143,11 @@ static size_t read_lines(const char *lines, cwi_stroke *strokes, double *width)
     return count;
 }
 
+size_t cwi_missing_glyph(cwi_stroke strokes[CWI_GLYPH_STROKES], double *width)
+{
+    return read_lines(missing, strokes, width);
+}
+
 size_t cwi_glyph(uint32_t character, cwi_stroke strokes[CWI_GLYPH_STROKES], double *width)
 {
     const char *lines = find_glyph(character);
@@ -152,8 +155,7 @@ size_t cwi_glyph(uint32_t character, cwi_stroke strokes[CWI_GLYPH_STROKES], doub
     return lines ? read_lines(lines, strokes, width) : 0;
 }
 
-/* Decodes the next character; bytes that are not UTF-8 become U+FFFD, one by one. */
-static uint32_t next_character(const char **text)
+uint32_t cwi_next_character(const char **text)
 {
     const unsigned char *t = (const unsigned char *)*text;
     const int more = t[0] < 0x80 ? 0 : t[0] >> 5 == 6 ? 1 : t[0] >> 4 == 14 ? 2 : -1;
@@ -166,59 +168,4 @@ static uint32_t next_character(const char **text)
         ++*text;
     }
     return more < 0 ? 0xfffd : c;
-}
-
-/* Places a character's strokes and returns how far the next one is. */
-static double set_glyph(uint32_t character, double x, double y, double unit,
-                        cwi_stroke *strokes, size_t *count)
-{
-    double width;
-    *count = 0;
-    if (character == ' ')
-        return (SPACE + GAP) * unit;
-    *count = cwi_glyph(character, strokes, &width);
-    if (*count == 0)
-        *count = read_lines(missing, strokes, &width);
-    for (size_t n = 0; n < *count; n++) {
-        double *ends[2] = {strokes[n].from, strokes[n].to};
-        for (int e = 0; e < 2; e++) {
-            ends[e][0] = x + ends[e][0] * unit;
-            ends[e][1] = y + (ends[e][1] - 6) * unit;
-        }
-    }
-    return (width + GAP) * unit;
-}
-
-void cwi_pen_text(const cwi_pen *pen, double x, double y, double height, const char *text)
-{
-    cwi_stroke strokes[CWI_GLYPH_STROKES];
-    while (*text) {
-        size_t count;
-        x += set_glyph(next_character(&text), x, y, height / 6, strokes, &count);
-        if (count > 0)
-            cwi_pen_draw(pen, strokes, count);
-    }
-}
-
-double cwi_text_width(double height, const char *text)
-{
-    cwi_stroke strokes[CWI_GLYPH_STROKES];
-    double width = 0;
-    size_t count;
-    while (*text)
-        width += set_glyph(next_character(&text), 0, 0, height / 6, strokes, &count);
-    return width > 0 ? width - GAP * height / 6 : 0;
-}
-
-void cwi_text_write(cw_image *image, const double at[2], double height, double anchor,
-                    const double color[4], const double halo[4], const char *text)
-{
-    const double left = at[0] - anchor * cwi_text_width(height, text);
-    const double width = fmax(height / 7, 1.1);
-    cwi_pen pen = {.image = image, .width = 2.6 * width};
-    memcpy(pen.color, halo, sizeof pen.color);
-    cwi_pen_text(&pen, left, at[1], height, text);
-    pen.width = width;
-    memcpy(pen.color, color, sizeof pen.color);
-    cwi_pen_text(&pen, left, at[1], height, text);
 }
