@@ -129,6 +129,7 @@ void cli_json_lattice(cli_json *j, const cli_lattice *lattice, const char *by)
 void cli_json_lattice_facts(cli_json *j, const cw_hollow_facts *f, bool measured)
 {
     cli_json_count(j, "drains", f->drains);
+    cli_json_count(j, "loose", f->loose);
     if (!measured)
         return;
     cli_json_count(j, "infill_samples", f->infill_samples);

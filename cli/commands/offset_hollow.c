@@ -323,6 +323,9 @@ static cw_status report_hollow(cli_mesh_run *r, cw_error *err)
     if (has_lattice && drains)
         cli_say("%s: %s drain%s so that each channel of the lattice has one", path,
                 cli_count(f->drains), f->drains == 1 ? "" : "s");
+    if (f->loose)
+        cli_say("%s: %s piece%s of the lattice that the drains cut loose %s left out", path,
+                cli_count(f->loose), f->loose == 1 ? "" : "s", f->loose == 1 ? "is" : "are");
     used += snprintf(r->found + used, sizeof r->found - (size_t)used, "; %.6g mm3 removed",
                      f->removed_mm3);
     if (r->args->measure)

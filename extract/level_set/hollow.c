@@ -469,6 +469,59 @@ static cw_status drain_cavity(hollowing *h, cw_mesh *out, cw_error *err)
     return st;
 }
 
+/* Returns true if a solid has a vertex near the outer surface. */
+static cw_status reaches_outside(const hollowing *h, const cw_mesh *solid, bool *reaches,
+                                 cw_error *err)
+{
+    const cw_mesh_distance_desc desc = {.vertices_only = true, .threads = h->desc->threads};
+    cw_distance d;
+    float *each = cwi_alloc_array(solid->vertex_count, sizeof *each);
+    const cw_status st =
+        each ? cw_distance_to_mesh(solid, h->mesh, &desc, &d, each, err) : cwi_fail_memory(err);
+    *reaches = false;
+    for (size_t v = 0; v < solid->vertex_count && st == CW_OK && !*reaches; v++)
+        *reaches = (double)each[v] < h->desc->wall_mm / 2;
+    cwi_free(each);
+    return st;
+}
+
+/* Leaves out pieces of a lattice that drains cut loose. */
+static cw_status drop_loose(hollowing *h, cw_mesh *out, cw_error *err)
+{
+    cw_mesh *solids = NULL, kept = {0};
+    size_t count = 0;
+    cw_status st = cw_mesh_split(out, &solids, &count, err);
+    for (size_t n = 0; n < count && st == CW_OK; n++) {
+        bool reaches;
+        st = reaches_outside(h, &solids[n], &reaches, err);
+        if (st == CW_OK && reaches)
+            st = cwi_mesh_append(&kept, &solids[n], err);
+        h->facts.loose += !reaches;
+    }
+    cw_meshes_free(solids, count);
+    if (st != CW_OK || !h->facts.loose) {
+        cw_mesh_free(&kept);
+        return st;
+    }
+    cw_mesh_free(out);
+    *out = kept;
+    return CW_OK;
+}
+
+/* Makes as many solids of the result as the mesh has, where there is a lattice, and measures it. */
+static cw_status count_solids(hollowing *h, cw_mesh *out, cw_quality *after, cw_error *err)
+{
+    cw_quality input = {0};
+    cw_status st = measure_cavities(h, out, after, err);
+    if (st != CW_OK || !h->desc->infill)
+        return st;
+    st = measure_cavities(h, h->mesh, &input, err);
+    if (st != CW_OK || after->components - after->cavities <= input.components - input.cavities)
+        return st;
+    st = drop_loose(h, out, err);
+    return st == CW_OK ? measure_cavities(h, out, after, err) : st;
+}
+
 static cw_status finish_hollow(hollowing *h, cw_mesh *out, cw_error *err)
 {
     cw_quality after = {0};
@@ -478,7 +531,7 @@ static cw_status finish_hollow(hollowing *h, cw_mesh *out, cw_error *err)
     if (st == CW_OK)
         st = h->desc->drain_count ? drain_cavity(h, out, err) : join_surfaces(h, out, err);
     if (st == CW_OK)
-        st = measure_cavities(h, out, &after, err);
+        st = count_solids(h, out, &after, err);
     h->facts.sealed = after.cavities;
     if (!h->desc->drain_count)
         h->facts.cavities = after.cavities;

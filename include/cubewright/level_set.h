@@ -187,7 +187,8 @@ typedef struct cw_hollow_facts {
                                         measured. Where drains begin, the wall before they were
                                         made */
     size_t drains;                   /* made: with a lattice one for each channel */
-    size_t infill_samples;           /* points at which walls of the lattice were measured */
+    size_t loose;          /* pieces of a lattice that drains cut off: they are left out */
+    size_t infill_samples; /* points at which walls of the lattice were measured */
     double infill_min_mm, infill_median_mm,
         infill_max_mm; /* their thickness, along normals of the middle; 0: not measured */
 } cw_hollow_facts;
