@@ -280,7 +280,7 @@ static size_t count_leaves(const cw_sparse *sparse)
     return count;
 }
 
-/* Makes leaves of the tiles, which are inside of the mesh. */
+/* Turns tiles into leaves: all tiles are inside of the mesh. */
 static void split_tiles(const cw_sparse *sparse, uint32_t (*leaves)[3], float *voxels)
 {
     size_t count = sparse->leaf_count;

@@ -138,7 +138,8 @@ typedef enum cw_infill_kind {
     CW_INFILL_COUNT
 } cw_infill_kind;
 
-/* Returns a lattice's name: gyroid, schwarz-p, diamond; NULL for no kind. */
+/* Returns a lattice's name: gyroid, schwarz-p, diamond.
+ * kind     of lattice; of any other number NULL is returned */
 CW_API const char *cw_infill_name(cw_infill_kind kind);
 
 /* Options of a lattice. Walls have one thickness, or change from wall_mm to end_wall_mm by a depth or
@@ -187,10 +188,12 @@ typedef struct cw_hollow_facts {
                                         measured. Where drains begin, the wall before they were
                                         made */
     size_t drains;                   /* made: with a lattice one for each channel */
-    size_t loose;          /* pieces of a lattice that drains cut off: they are left out */
-    size_t infill_samples; /* points at which walls of the lattice were measured */
-    double infill_min_mm, infill_median_mm,
-        infill_max_mm; /* their thickness, along normals of the middle; 0: not measured */
+    size_t loose;            /* pieces of a lattice that drains cut off: they are left out */
+    size_t infill_samples;   /* points at which walls of the lattice were measured */
+    double infill_min_mm;    /* thickness along normals of the middle, the thinnest; 0: not
+                                measured */
+    double infill_median_mm; /* the median of them */
+    double infill_max_mm;    /* the thickest */
 } cw_hollow_facts;
 
 /* Hollows a solid and leaves a wall.
