@@ -108,7 +108,7 @@ static double count_infill_bytes(const hollowing *h, double factor)
            cwi_infill_bytes(h->desc->infill, &h->before, voxel, h->desc->drain_count > 0);
 }
 
-/* Predicts the memory for a lattice. Fails with CW_ERR_LIMIT, and names the walls that would do. */
+/* Predicts the memory for a lattice. Fails with CW_ERR_LIMIT, and names the scale that would do. */
 static cw_status check_infill_fits(const hollowing *h, cw_error *err)
 {
     const cw_hollow_desc *d = h->desc;
@@ -120,10 +120,10 @@ static cw_status check_infill_fits(const hollowing *h, cw_error *err)
         factor *= 1.05;
     return cwi_fail(
         err, CW_ERR_LIMIT,
-        "a lattice with walls of %.3g mm has voxels of %.3g mm, which need some %.3g "
-        "MB; the limit is %.3g MB; walls of %.2g mm with their own voxels would do",
+        "a lattice with walls of %.3g mm has voxels of %.3g mm, which need some %.3g MB; the "
+        "limit is %.3g MB; walls and cells %.2g times as large would do",
         cwi_infill_thinnest(d->infill), h->voxel_mm, bytes / 1e6, (double)d->max_bytes / 1e6,
-        1.05 * factor * cwi_infill_thinnest(d->infill));
+        1.05 * factor);
 }
 
 /* --- cavities ----------------------------------------------------------------------------- */
@@ -469,7 +469,7 @@ static cw_status drain_cavity(hollowing *h, cw_mesh *out, cw_error *err)
     return st;
 }
 
-/* Returns true if a solid has a vertex near the outer surface. */
+/* Finds out if a solid has a vertex near the outer surface. */
 static cw_status reaches_outside(const hollowing *h, const cw_mesh *solid, bool *reaches,
                                  cw_error *err)
 {

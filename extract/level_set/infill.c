@@ -164,11 +164,11 @@ cw_status cwi_infill_check(const cw_infill_desc *d, double voxel_mm, cw_error *e
                         "both walls and one of these were expected, or one wall and neither");
     const double most = kinds[d->kind].thickest, thickest = find_thickest(d);
     if (thickest > most * d->cell_mm)
-        return cwi_fail(err, CW_ERR_ARGUMENT,
-                        "walls of %g mm leave no open channels in %s cells of %g mm: walls of "
-                        "at most %.4g mm were expected, or cells of at least %.4g mm",
-                        thickest, kinds[d->kind].name, d->cell_mm, most * d->cell_mm,
-                        thickest / most);
+        return cwi_fail(
+            err, CW_ERR_ARGUMENT,
+            "walls of %.4g mm leave no open channels in %s cells of %.4g mm: walls of "
+            "at most %.4g mm were expected, or cells of at least %.4g mm",
+            thickest, kinds[d->kind].name, d->cell_mm, most * d->cell_mm, thickest / most);
     const double thinnest = cwi_infill_thinnest(d);
     if (voxel_mm * CWI_INFILL_VOXELS > thinnest * (1 + 1e-9))
         return cwi_fail(err, CW_ERR_ARGUMENT,
