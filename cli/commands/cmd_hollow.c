@@ -9,6 +9,14 @@ static const cli_option options[] = {
      "Diameter and direction of drain holes out of the largest cavity: 4mm@-z, or "
      "4mm@-z,3mm@+x (none)",
      offsetof(cli_solid_args, drain)},
+    {"infill", 0, &cli_kind_infill, "KIND:CELL:WALL[:WALL]",
+     "Lattice in the cavities: gyroid, schwarz-p or diamond, its cells and walls, as "
+     "gyroid:8mm:0.8mm (none)",
+     offsetof(cli_solid_args, infill)},
+    {"infill-by", 0, CLI_TEXT, "depth:L|VOLUME",
+     "Change the lattice from the first wall to the second: at this depth below the outer wall, "
+     "or from the least to the greatest value of a volume (none)",
+     offsetof(cli_solid_args, mesh.source), CLI_VALUES_VOLUME},
     CLI_MESH_MEASURE("Measure the thickness of the wall (on; --no-measure)"),
     CLI_SOLID_OPTIONS,
 };
@@ -16,12 +24,13 @@ static const cli_option options[] = {
 static const cli_rule rules[] = {
     {NULL, CLI_NEEDS, "output"},
     {NULL, CLI_NEEDS, "wall"},
+    {"infill-by", CLI_NEEDS, "infill"},
     CLI_COMPRESS_RULES,
 };
 
 const cli_command cli_hollow = {
     .name = "hollow",
-    .usage = "MESH -o MESH --wall L [--drain D@AXIS,...] [options]",
+    .usage = "MESH -o MESH --wall L [--infill KIND:CELL:WALL] [--drain D@AXIS,...] [options]",
     .about = "Turn a solid into a shell, to save print material",
     .page = cli_page_hollow,
     .options = options,

@@ -24,6 +24,7 @@ typedef struct solid_state {
     double voxel_mm, by_mm, wall_mm;
     double off_max_mm, off_rms_mm; /* of an offset */
     cw_offset_facts offset;
+    cli_lattice lattice;
     cw_mesh united; /* the input of hollow, where its triangles intersected */
 } solid_state;
 
@@ -63,6 +64,7 @@ static void put_hollow_params(cli_json *j, const cli_mesh_run *r, const cli_made
     const solid_state *s = r->state;
     cli_json_number(j, "wall_mm", s->wall_mm);
     put_drains(j, s->drains, args_of(r)->drain.count);
+    cli_json_lattice(j, &s->lattice, r->args->source);
     put_voxel(j, r, made);
 }
 
@@ -88,6 +90,8 @@ static void put_hollow(cli_json *j, const cli_mesh_run *r)
         cli_json_number(j, "wall_min_mm", f->wall_min_mm);
         cli_json_number(j, "wall_max_mm", f->wall_max_mm);
     }
+    if (args_of(r)->infill.given)
+        cli_json_lattice_facts(j, f, r->args->measure);
     cli_json_close(j, '}');
 }
 
@@ -162,7 +166,11 @@ const cli_kind cli_kind_drains = {
 
 static cw_status check_values(cli_mesh_run *r, cw_error *err)
 {
+    bool is_file;
     r->reads_parts = false;
+    const cw_status st = cli_check_infill_by(r->args->source, &is_file, err);
+    if (st != CW_OK)
+        return st;
     if (cw_level_set_available())
         return CW_OK;
     return cwi_fail(
@@ -183,7 +191,6 @@ static cw_status resolve_lengths(cli_mesh_run *r, cw_error *err)
     solid_state *s = r->state;
     const cli_solid_args *args = args_of(r);
     const cw_mesh *m = &r->pieces.piece->input;
-    (void)err;
     if (m->colors || m->scalars || m->labels)
         cli_say("%s: colours, scalars and labels are not kept", r->mesh.path);
     s->voxel_mm = length_mm(r, &args->voxel);
@@ -193,7 +200,8 @@ static cw_status resolve_lengths(cli_mesh_run *r, cw_error *err)
         s->drains[n].diameter_mm = length_mm(r, &args->drain.wide[n]);
         memcpy(s->drains[n].direction, args->drain.direction[n], sizeof s->drains[n].direction);
     }
-    return CW_OK;
+    return cli_open_lattice(&args->infill, r->args->source, &r->args->input,
+                            r->pieces.diagonal_mm, &s->lattice, err);
 }
 
 /* Writes "cubewright COMMAND in.stl -o in-made.stl", to be typed; NULL without memory. */
@@ -276,7 +284,8 @@ static cw_status hollow_mesh(cli_mesh_run *r, cw_error *err)
                                  .no_measure = !r->args->measure,
                                  .threads = r->threads,
                                  .max_bytes = cli_memory_limit(&r->args->input),
-                                 .progress = cli_progress(1, "solid")};
+                                 .progress = cli_progress(1, "solid"),
+                                 .infill = args_of(r)->infill.given ? &s->lattice.desc : NULL};
     st = cw_mesh_hollow(s->united.triangle_count ? &s->united : &p->input, &desc, &p->out,
                         &s->facts, err);
     s->voxel_mm = st == CW_OK ? s->facts.voxel_mm : s->voxel_mm;
@@ -290,8 +299,11 @@ static cw_status report_hollow(cli_mesh_run *r, cw_error *err)
     const char *path = r->mesh.path;
     const bool drains = args_of(r)->drain.count > 0;
     const double wide = fmin(4, r->pieces.diagonal_mm / 10); /* fits small solids, too */
-    char way[80] = "";
+    const bool has_lattice = args_of(r)->infill.given;
+    char way[80] = "", lattice[160] = "";
     (void)err;
+    if (has_lattice)
+        cli_describe_lattice(&s->lattice.desc, f, lattice, sizeof lattice);
     if (!drains)
         snprintf(way, sizeof way, ": print material stays inside (--drain %.2gmm@-z)", wide);
     cli_say("%s: the outer surface stays as it is%s; the cavities have voxels of %.4g mm", path,
@@ -303,14 +315,22 @@ static cw_status report_hollow(cli_mesh_run *r, cw_error *err)
         snprintf(r->found, sizeof r->found, "; %s cavit%s, %s sealed", cli_count(f->cavities),
                  f->cavities == 1 ? "y" : "ies", cli_count(f->sealed));
     if (f->filled)
-        used += snprintf(r->found + used, sizeof r->found - (size_t)used,
-                         ", %s too small left filled (%.3g mm3)", cli_count(f->filled),
+        used += snprintf(r->found + used, sizeof r->found - (size_t)used, ", %s %s (%.3g mm3)",
+                         cli_count(f->filled),
+                         has_lattice && drains ? "too small or without a drain left filled"
+                                               : "too small left filled",
                          f->filled_mm3);
+    if (has_lattice && drains)
+        cli_say("%s: %s drain%s so that each channel of the lattice has one", path,
+                cli_count(f->drains), f->drains == 1 ? "" : "s");
+    if (f->loose)
+        cli_say("%s: %s piece%s of the lattice that the drains cut loose %s left out", path,
+                cli_count(f->loose), f->loose == 1 ? "" : "s", f->loose == 1 ? "is" : "are");
     used += snprintf(r->found + used, sizeof r->found - (size_t)used, "; %.6g mm3 removed",
                      f->removed_mm3);
     if (r->args->measure)
         snprintf(r->found + used, sizeof r->found - (size_t)used,
-                 "; wall %.4g to %.4g mm thick", f->wall_min_mm, f->wall_max_mm);
+                 "; wall %.4g to %.4g mm thick%s", f->wall_min_mm, f->wall_max_mm, lattice);
     return CW_OK;
 }
 
@@ -442,6 +462,7 @@ cw_status cli_run_hollow(void *args, cw_error *err)
     solid_state state = {0};
     const cw_status st = cli_run_mesh_command(&hollow, args, &state, 1, err);
     cw_mesh_free(&state.united);
+    cli_free_lattice(&state.lattice);
     return st;
 }
 

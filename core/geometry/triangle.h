@@ -1,4 +1,4 @@
-/* Triangles of three points: normals, the middle, and the order of corners. Corners of all
+/* Triangles of three points: normals, the middle, rays, and the order of corners. Corners of all
  * triangles of a mesh are numbered: corner c is corner c % 3 of triangle c / 3. */
 #ifndef CORE_GEOMETRY_TRIANGLE_H
 #define CORE_GEOMETRY_TRIANGLE_H
@@ -86,6 +86,27 @@ static inline bool cwi_row_is_left(int64_t twice_area, const int64_t a[2], const
     if (twice_area != 0)
         return twice_area > 0;
     return a[1] != b[1] ? a[1] > b[1] : b[0] > a[0];
+}
+
+/* Returns the fraction of a vector after which a ray meets a triangle, from either side, or INFINITY;
+ * below 0: behind its start.
+ * Source  [Moeller1997] */
+static inline double cwi_triangle_ray(const double p[3][3], const double from[3],
+                                      const double vector[3])
+{
+    double sides[2][3], across[3], to[3], around[3];
+    cwi_sub(p[1], p[0], sides[0]);
+    cwi_sub(p[2], p[0], sides[1]);
+    cwi_cross(vector, sides[1], across);
+    const double det = cwi_dot(sides[0], across);
+    if (det == 0)
+        return INFINITY;
+    cwi_sub(from, p[0], to);
+    const double u = cwi_dot(to, across) / det;
+    cwi_cross(to, sides[0], around);
+    const double v = cwi_dot(vector, around) / det;
+    const bool is_inside = u >= 0 && v >= 0 && u + v <= 1;
+    return is_inside ? cwi_dot(sides[1], around) / det : INFINITY;
 }
 
 #endif

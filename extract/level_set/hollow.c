@@ -2,11 +2,11 @@
  * the cavity outward. */
 #include "core/mesh/mesh_attributes.h"
 #include "core/mesh/mesh_triangle.h"
+#include "extract/level_set/infill.h"
 #include "extract/level_set/level_set.h"
 
 #include "core/base/memory.h"
 #include "core/base/status.h"
-#include "core/geometry/union_find.h"
 #include "core/geometry/vec3.h"
 #include "core/mesh/mesh.h"
 #include "core/volume/volume.h"
@@ -28,7 +28,15 @@ static const double DRAIN_TURN = 0.03;
 /* A drain: all points within a radius of a ray. */
 typedef struct ray {
     double from[3], along[3], radius; /* along: of length 1 */
+    size_t drain;                     /* of the options */
 } ray;
+
+/* Part of a drain's radius within which a vertex of a cavity must be, so that the drain meets it: surely,
+ * and so well that it needs no other. */
+static const double SURELY_MET = 0.9, CLEARLY_MET = 0.5;
+
+/* Part of the largest channel's volume from which on a channel of a lattice gets drains. */
+static const double LARGE_CHANNEL = 0.25;
 
 typedef struct hollowing {
     const cw_mesh *mesh;
@@ -36,11 +44,12 @@ typedef struct hollowing {
     cw_quality before;
     double voxel_mm;
     cw_volume volume;
-    cw_mesh inner; /* surfaces of the cavities, facing outward */
-    uint32_t *set; /* for each of its vertices: the least vertex of its component */
-    double *size;  /* of the component that a vertex names, mm3 */
-    uint32_t largest;
+    cw_mesh inner;  /* surfaces of the cavities, facing outward */
+    cw_mesh *voids; /* the cavities one by one, with drains only: the largest comes first */
+    size_t void_count;
     ray *rays;
+    size_t ray_count;
+    cwi_infill infill; /* with desc->infill */
     cw_hollow_facts facts;
 } hollowing;
 
@@ -75,16 +84,46 @@ static cw_status check_desc(const cw_hollow_desc *d, cw_error *err)
                         "voxels of %g mm are too large for %s of %g mm: at most half of that",
                         d->voxel_mm, find_narrowest(d) < d->wall_mm ? "a drain" : "a wall",
                         find_narrowest(d));
-    return CW_OK;
+    return d->infill ? cwi_infill_check(d->infill, d->voxel_mm, err) : CW_OK;
 }
 
 static double choose_voxel(const cw_hollow_desc *d, const cw_quality *q)
 {
-    const double finest = find_narrowest(d) / 4;
+    const double infill =
+        d->infill ? cwi_infill_thinnest(d->infill) / CWI_INFILL_VOXELS : INFINITY;
+    const double finest = fmin(find_narrowest(d) / 4, infill),
+                 coarsest = fmin(find_narrowest(d) / 2, infill);
     double voxel = finest;
-    while (!cwi_level_set_fits(q, voxel, d->wall_mm, d->max_bytes) && voxel < 2 * finest)
-        voxel = fmin(1.05 * voxel, 2 * finest);
+    while (!cwi_level_set_fits(q, voxel, d->wall_mm, d->max_bytes) && voxel < coarsest)
+        voxel = fmin(1.05 * voxel, coarsest);
     return voxel;
+}
+
+/* Returns the bytes for a lattice with walls that are thicker by a factor, as its voxels are. */
+static double count_infill_bytes(const hollowing *h, double factor)
+{
+    const double voxel = factor * h->voxel_mm;
+    return cwi_level_set_bytes(&h->before, voxel,
+                               h->desc->wall_mm + h->desc->infill->depth_mm) +
+           cwi_infill_bytes(h->desc->infill, &h->before, voxel, h->desc->drain_count > 0);
+}
+
+/* Predicts the memory for a lattice. Fails with CW_ERR_LIMIT, and names the scale that would do. */
+static cw_status check_infill_fits(const hollowing *h, cw_error *err)
+{
+    const cw_hollow_desc *d = h->desc;
+    const double bytes = count_infill_bytes(h, 1);
+    double factor = 1;
+    if (!d->max_bytes || bytes <= (double)d->max_bytes)
+        return CW_OK;
+    while (count_infill_bytes(h, factor) > (double)d->max_bytes && factor < 1e30)
+        factor *= 1.05;
+    return cwi_fail(
+        err, CW_ERR_LIMIT,
+        "a lattice with walls of %.3g mm has voxels of %.3g mm, which need some %.3g MB; the "
+        "limit is %.3g MB; walls and cells %.2g times as large would do",
+        cwi_infill_thinnest(d->infill), h->voxel_mm, bytes / 1e6, (double)d->max_bytes / 1e6,
+        1.05 * factor);
 }
 
 /* --- cavities ----------------------------------------------------------------------------- */
@@ -113,26 +152,12 @@ static double volume_under(const cw_mesh *m, size_t t)
     return cwi_dot(p[0], normal) / 6;
 }
 
-/* Finds the largest cavity: the component of the inner surface that encloses most. */
-static cw_status find_largest(hollowing *h, cw_error *err)
+static double enclosed_volume(const cw_mesh *m)
 {
-    const cw_mesh *m = &h->inner;
-    h->set = cwi_sets_alloc(m->vertex_count);
-    h->size = cwi_alloc_zeroed(m->vertex_count, sizeof *h->size);
-    if (!h->set || !h->size)
-        return cwi_fail_memory(err);
-    for (const uint32_t *c = m->triangles; c < m->triangles + 3 * m->triangle_count; c += 3) {
-        cwi_sets_join(h->set, c[0], c[1]);
-        cwi_sets_join(h->set, c[0], c[2]);
-    }
-    for (size_t t = 0; t < m->triangle_count; t++)
-        h->size[cwi_sets_find(h->set, m->triangles[3 * t])] += volume_under(m, t);
-    for (uint32_t v = 0; v < m->vertex_count; v++) {
-        h->set[v] = cwi_sets_find(h->set, v);
-        if (h->size[v] > h->size[h->largest])
-            h->largest = v;
-    }
-    return CW_OK;
+    double sum = 0;
+    for (size_t n = 0; n < m->triangle_count; n++)
+        sum += volume_under(m, n);
+    return sum;
 }
 
 /* Makes the surfaces of the cavities. Those smaller than a ball as wide as the wall is thick are
@@ -141,7 +166,8 @@ static cw_status make_cavities(hollowing *h, cw_error *err)
 {
     const double wall = h->desc->wall_mm;
     cw_drop_counts dust = {0};
-    cw_status st = take_surface(h, -wall, h->mesh->normals, &h->inner, err);
+    const double level = h->desc->infill ? 0 : -wall;
+    cw_status st = take_surface(h, level, h->mesh->normals, &h->inner, err);
     if (st == CW_OK)
         st = cw_mesh_drop_volumes(&h->inner, CWI_PI / 6 * wall * wall * wall, &dust, err);
     h->facts.filled = dust.dropped;
@@ -160,34 +186,33 @@ static cw_status make_cavities(hollowing *h, cw_error *err)
 
 /* --- drains ------------------------------------------------------------------------------- */
 
-/* Returns how far a vertex of the largest cavity's surface is along a ray; other vertices do
- * not count. */
-static double measure_depth(const hollowing *h, const ray *r, size_t vertex, double p[3])
+/* Returns how far a vertex is along a ray. */
+static double measure_depth(const cw_mesh *m, const ray *r, size_t vertex, double p[3])
 {
-    cwi_mesh_world(&h->inner, vertex, p);
-    return h->set[vertex] == h->largest ? cwi_dot(p, r->along) : -INFINITY;
+    cwi_mesh_world(m, vertex, p);
+    return cwi_dot(p, r->along);
 }
 
-/* Starts a ray at the largest cavity's farthest point. Of several, as on a flat floor, it takes
- * the one nearest to their middle. */
-static void place_ray(const hollowing *h, const cw_drain *drain, ray *r)
+/* Starts a ray at a cavity's farthest point. Of several, as on a flat floor, it takes the one nearest
+ * to their middle. */
+static void place_ray(const hollowing *h, const cw_drain *drain, const cw_mesh *cavity, ray *r)
 {
     const double length = cwi_length(drain->direction);
     double p[3], middle[3] = {0}, farthest = -INFINITY, nearest = INFINITY, count = 0;
     r->radius = drain->diameter_mm / 2;
     for (int a = 0; a < 3; a++)
         r->along[a] = drain->direction[a] / length;
-    for (size_t v = 0; v < h->inner.vertex_count; v++)
-        farthest = fmax(farthest, measure_depth(h, r, v, p));
+    for (size_t v = 0; v < cavity->vertex_count; v++)
+        farthest = fmax(farthest, measure_depth(cavity, r, v, p));
     farthest -= h->voxel_mm;
-    for (size_t v = 0; v < h->inner.vertex_count; v++)
-        if (measure_depth(h, r, v, p) >= farthest) {
+    for (size_t v = 0; v < cavity->vertex_count; v++)
+        if (measure_depth(cavity, r, v, p) >= farthest) {
             count++;
             for (int a = 0; a < 3; a++)
                 middle[a] += (p[a] - middle[a]) / count;
         }
-    for (size_t v = 0; v < h->inner.vertex_count; v++)
-        if (measure_depth(h, r, v, p) >= farthest) {
+    for (size_t v = 0; v < cavity->vertex_count; v++)
+        if (measure_depth(cavity, r, v, p) >= farthest) {
             const double distance_sq = cwi_distance_sq(p, middle);
             if (distance_sq < nearest) {
                 nearest = distance_sq;
@@ -196,15 +221,82 @@ static void place_ray(const hollowing *h, const cw_drain *drain, ray *r)
         }
 }
 
+/* Returns true if a drain surely meets a cavity: a vertex is well within it.
+ * share  of the radius that counts */
+static bool meets_cavity(const ray *r, const cw_mesh *cavity, double share)
+{
+    const double limit = share * r->radius;
+    for (size_t v = 0; v < cavity->vertex_count; v++) {
+        double p[3], to[3];
+        cwi_mesh_world(cavity, v, p);
+        cwi_sub(p, r->from, to);
+        const double along = cwi_dot(to, r->along);
+        cwi_add_scaled(to, -fmax(along, 0), r->along, to);
+        if (cwi_dot(to, to) < limit * limit)
+            return true;
+    }
+    return false;
+}
+
+/* Appends a ray for each drain to a cavity that none in the same direction meets yet. */
+static cw_status reach_cavity(hollowing *h, const cw_mesh *cavity, cw_error *err)
+{
+    const size_t count = h->desc->drain_count;
+    ray *rays = cwi_realloc_array(h->rays, h->ray_count + count, sizeof *rays);
+    if (!rays)
+        return cwi_fail_memory(err);
+    h->rays = rays;
+    const size_t before = h->ray_count;
+    for (size_t n = 0; n < count; n++) {
+        bool is_met = false;
+        for (size_t k = 0; k < before && !is_met; k++)
+            is_met = rays[k].drain == n && meets_cavity(&rays[k], cavity, CLEARLY_MET);
+        if (is_met)
+            continue;
+        place_ray(h, &h->desc->drains[n], cavity, &rays[h->ray_count]);
+        rays[h->ray_count++].drain = n;
+    }
+    return CW_OK;
+}
+
+/* Fills the channels of a lattice that no drain meets. */
+static cw_status fill_closed(hollowing *h, cw_error *err)
+{
+    cw_mesh kept = {0};
+    size_t closed = 0;
+    cw_status st = CW_OK;
+    for (size_t n = 0; n < h->void_count && st == CW_OK; n++) {
+        bool is_met = false;
+        for (size_t k = 0; k < h->ray_count && !is_met; k++)
+            is_met = meets_cavity(&h->rays[k], &h->voids[n], SURELY_MET);
+        if (is_met) {
+            st = cwi_mesh_append(&kept, &h->voids[n], err);
+            continue;
+        }
+        closed++;
+        h->facts.filled++;
+        h->facts.filled_mm3 += enclosed_volume(&h->voids[n]);
+    }
+    if (st == CW_OK && closed) {
+        cw_mesh_free(&h->inner);
+        h->inner = kept;
+        kept = (cw_mesh){0};
+    }
+    cw_mesh_free(&kept);
+    return st;
+}
+
+/* Places drains: to the largest cavity, or to all large channels of a lattice. */
 static cw_status place_rays(hollowing *h, cw_error *err)
 {
-    h->rays = cwi_alloc_array(h->desc->drain_count, sizeof *h->rays);
-    if (!h->rays)
-        return cwi_fail_memory(err);
-    const cw_status st = find_largest(h, err);
-    for (size_t n = 0; n < h->desc->drain_count && st == CW_OK; n++)
-        place_ray(h, &h->desc->drains[n], &h->rays[n]);
-    return st;
+    cw_status st = cw_mesh_split(&h->inner, &h->voids, &h->void_count, err);
+    const double largest = st == CW_OK ? enclosed_volume(&h->voids[0]) : 0;
+    const size_t most = h->desc->infill ? h->void_count : 1;
+    for (size_t n = 0; n < most && st == CW_OK; n++)
+        if (!n || enclosed_volume(&h->voids[n]) >= LARGE_CHANNEL * largest)
+            st = reach_cavity(h, &h->voids[n], err);
+    h->facts.drains = h->ray_count;
+    return st == CW_OK && h->desc->infill ? fill_closed(h, err) : st;
 }
 
 /* --- the result --------------------------------------------------------------------------- */
@@ -225,6 +317,15 @@ static cw_status join_surfaces(const hollowing *h, cw_mesh *out, cw_error *err)
     return CW_OK;
 }
 
+/* Returns true if a vertex is of the cavity's own surface, not of a wall of the lattice in it. */
+static bool is_of_cavity(const hollowing *h, size_t vertex, double depth_mm)
+{
+    double p[3], foot[3], normal[3];
+    cwi_mesh_world(&h->inner, vertex, p);
+    const double wall = cwi_infill_wall(&h->infill, p, depth_mm - h->desc->wall_mm);
+    return cwi_infill_distance(&h->infill, p, foot, normal) > wall / 2 + h->voxel_mm / 2;
+}
+
 static cw_status measure_wall(hollowing *h, cw_error *err)
 {
     const cw_mesh_distance_desc desc = {.threads = h->desc->threads,
@@ -234,12 +335,20 @@ static cw_status measure_wall(hollowing *h, cw_error *err)
     cw_status st = each ? cw_distance_to_mesh(&h->inner, h->mesh, &desc, &d, each, err)
                         : cwi_fail_memory(err);
     if (st == CW_OK) {
-        h->facts.wall_max_mm = d.max_mm;
+        const bool all = !h->desc->infill;
+        h->facts.wall_max_mm = all ? d.max_mm : 0;
         h->facts.wall_min_mm = d.max_mm;
-        for (size_t n = 0; n < h->inner.vertex_count; n++)
-            h->facts.wall_min_mm = fmin(h->facts.wall_min_mm, (double)each[n]);
+        for (size_t n = 0; n < h->inner.vertex_count; n++) {
+            const double mm = (double)each[n];
+            h->facts.wall_min_mm = fmin(h->facts.wall_min_mm, mm);
+            if (!all && mm > h->facts.wall_max_mm && is_of_cavity(h, n, mm))
+                h->facts.wall_max_mm = mm;
+        }
     }
     cwi_free(each);
+    if (st == CW_OK && h->desc->infill)
+        st = cwi_infill_measure(&h->infill, h->mesh, &h->inner, h->desc->wall_mm,
+                                h->desc->threads, &h->desc->progress, &h->facts, err);
     return st;
 }
 
@@ -309,7 +418,7 @@ static cw_status make_drain(const hollowing *h, const ray *r, double turn, cw_me
 static cw_status subtract_drains(const hollowing *h, const cw_mesh *solid, double turn,
                                  cw_mesh *out, cw_error *err)
 {
-    const size_t count = h->desc->drain_count;
+    const size_t count = h->ray_count;
     const cw_boolean_desc desc = {.op = CW_BOOLEAN_DIFFERENCE,
                                   .threads = h->desc->threads,
                                   .progress = h->desc->progress};
@@ -348,9 +457,7 @@ static cw_status drain_cavity(hollowing *h, cw_mesh *out, cw_error *err)
 {
     cw_mesh solid = {0};
     cw_quality sealed = {0};
-    cw_status st = place_rays(h, err);
-    if (st == CW_OK)
-        st = join_surfaces(h, &solid, err);
+    cw_status st = join_surfaces(h, &solid, err);
     if (st == CW_OK)
         st = measure_cavities(h, &solid, &sealed, err);
     h->facts.cavities = sealed.cavities;
@@ -362,14 +469,69 @@ static cw_status drain_cavity(hollowing *h, cw_mesh *out, cw_error *err)
     return st;
 }
 
+/* Finds out if a solid has a vertex near the outer surface. */
+static cw_status reaches_outside(const hollowing *h, const cw_mesh *solid, bool *reaches,
+                                 cw_error *err)
+{
+    const cw_mesh_distance_desc desc = {.vertices_only = true, .threads = h->desc->threads};
+    cw_distance d;
+    float *each = cwi_alloc_array(solid->vertex_count, sizeof *each);
+    const cw_status st =
+        each ? cw_distance_to_mesh(solid, h->mesh, &desc, &d, each, err) : cwi_fail_memory(err);
+    *reaches = false;
+    for (size_t v = 0; v < solid->vertex_count && st == CW_OK && !*reaches; v++)
+        *reaches = (double)each[v] < h->desc->wall_mm / 2;
+    cwi_free(each);
+    return st;
+}
+
+/* Leaves out pieces of a lattice that drains cut loose. */
+static cw_status drop_loose(hollowing *h, cw_mesh *out, cw_error *err)
+{
+    cw_mesh *solids = NULL, kept = {0};
+    size_t count = 0;
+    cw_status st = cw_mesh_split(out, &solids, &count, err);
+    for (size_t n = 0; n < count && st == CW_OK; n++) {
+        bool reaches;
+        st = reaches_outside(h, &solids[n], &reaches, err);
+        if (st == CW_OK && reaches)
+            st = cwi_mesh_append(&kept, &solids[n], err);
+        h->facts.loose += !reaches;
+    }
+    cw_meshes_free(solids, count);
+    if (st != CW_OK || !h->facts.loose) {
+        cw_mesh_free(&kept);
+        return st;
+    }
+    cw_mesh_free(out);
+    *out = kept;
+    return CW_OK;
+}
+
+/* Makes as many solids of the result as the mesh has, where there is a lattice, and measures it. */
+static cw_status count_solids(hollowing *h, cw_mesh *out, cw_quality *after, cw_error *err)
+{
+    cw_quality input = {0};
+    cw_status st = measure_cavities(h, out, after, err);
+    if (st != CW_OK || !h->desc->infill)
+        return st;
+    st = measure_cavities(h, h->mesh, &input, err);
+    if (st != CW_OK || after->components - after->cavities <= input.components - input.cavities)
+        return st;
+    st = drop_loose(h, out, err);
+    return st == CW_OK ? measure_cavities(h, out, after, err) : st;
+}
+
 static cw_status finish_hollow(hollowing *h, cw_mesh *out, cw_error *err)
 {
     cw_quality after = {0};
-    cw_status st = h->desc->no_measure ? CW_OK : measure_wall(h, err);
+    cw_status st = h->desc->drain_count ? place_rays(h, err) : CW_OK;
+    if (st == CW_OK && !h->desc->no_measure)
+        st = measure_wall(h, err);
     if (st == CW_OK)
         st = h->desc->drain_count ? drain_cavity(h, out, err) : join_surfaces(h, out, err);
     if (st == CW_OK)
-        st = measure_cavities(h, out, &after, err);
+        st = count_solids(h, out, &after, err);
     h->facts.sealed = after.cavities;
     if (!h->desc->drain_count)
         h->facts.cavities = after.cavities;
@@ -383,12 +545,18 @@ static cw_status make_level_set(hollowing *h, cw_error *err)
     h->voxel_mm = d->voxel_mm > 0 ? d->voxel_mm : choose_voxel(d, &h->before);
     h->facts.voxel_mm = h->voxel_mm;
     const cw_level_set_desc desc = {.voxel_mm = h->voxel_mm,
-                                    .inside_mm = d->wall_mm,
+                                    .inside_mm =
+                                        d->wall_mm + (d->infill ? d->infill->depth_mm : 0),
                                     .threads = d->threads,
                                     .max_bytes = d->max_bytes,
                                     .progress = d->progress};
     const double level = -d->wall_mm;
-    return cwi_level_set_make(h->mesh, &h->before, &desc, &level, &h->volume, err);
+    cw_status st = d->infill ? check_infill_fits(h, err) : CW_OK;
+    if (st == CW_OK)
+        st = cwi_level_set_make(h->mesh, &h->before, &desc, &level, &h->volume, err);
+    return st == CW_OK && d->infill ? cwi_infill_apply(&h->infill, d->wall_mm, d->threads,
+                                                       &d->progress, &h->volume, err)
+                                    : st;
 }
 
 cw_status cw_mesh_hollow(const cw_mesh *mesh, const cw_hollow_desc *desc, cw_mesh *out,
@@ -401,6 +569,8 @@ cw_status cw_mesh_hollow(const cw_mesh *mesh, const cw_hollow_desc *desc, cw_mes
     cw_status st = check_desc(desc, err);
     if (st == CW_OK)
         st = cwi_level_set_check(mesh, desc->threads, &h.before, err);
+    if (st == CW_OK && desc->infill)
+        st = cwi_infill_init(&h.infill, desc->infill, &h.before, desc->threads, err);
     if (st == CW_OK)
         st = make_level_set(&h, err);
     if (st == CW_OK)
@@ -413,8 +583,7 @@ cw_status cw_mesh_hollow(const cw_mesh *mesh, const cw_hollow_desc *desc, cw_mes
         *facts = h.facts;
     cw_volume_free(&h.volume);
     cw_mesh_free(&h.inner);
-    cwi_free(h.set);
-    cwi_free(h.size);
+    cw_meshes_free(h.voids, h.void_count);
     cwi_free(h.rays);
     if (st != CW_OK)
         cw_mesh_free(out);

@@ -129,18 +129,47 @@ typedef struct cw_drain {
     double direction[3]; /* in the world; of any length but 0 */
 } cw_drain;
 
+/* Lattices: walls along triply periodic minimal surfaces, which part the space into two channels of the
+ * same kind, without a support or a corner. */
+typedef enum cw_infill_kind {
+    CW_INFILL_GYROID,    /* Schoen's */
+    CW_INFILL_SCHWARZ_P, /* channels along the axes, through cubes */
+    CW_INFILL_DIAMOND, /* Schwarz D: channels as bonds of a diamond; the most wall of the three */
+    CW_INFILL_COUNT
+} cw_infill_kind;
+
+/* Returns a lattice's name: gyroid, schwarz-p, diamond.
+ * kind     of lattice; of any other number NULL is returned */
+CW_API const char *cw_infill_name(cw_infill_kind kind);
+
+/* Options of a lattice. Walls have one thickness, or change from wall_mm to end_wall_mm by a depth or
+ * by a volume. Both are at most 1/3 of a cell, of diamond 0.24: else channels close. */
+typedef struct cw_infill_desc {
+    uint32_t version;    /* 0: the first version of this struct */
+    cw_infill_kind kind; /* default: gyroid */
+    double cell_mm;      /* required: edge of a cell, the period of the lattice */
+    double wall_mm;      /* required: thickness of the walls */
+    double end_wall_mm;  /* thickness where the depth or the value ends; default: as wall_mm */
+    double depth_mm;     /* walls are end_wall_mm thick this far below the cavity's surface, and
+                            wall_mm at it; default: not by depth */
+    const cw_volume *by; /* walls are wall_mm thick at its least value and outside of it, and
+                            end_wall_mm at its greatest; dense; default: not by a volume */
+} cw_infill_desc;
+
 /* Options of hollowing a mesh. Zero fields mean the default named beside them. */
 typedef struct cw_hollow_desc {
-    uint32_t version;       /* 0: the first version of this struct */
-    double wall_mm;         /* required; at least 2 voxels */
-    const cw_drain *drains; /* drain_count of them */
-    size_t drain_count;     /* default: none, the cavities stay closed */
-    double voxel_mm;        /* default: 1/4 of the wall or of the narrowest drain; with
+    uint32_t version;             /* 0: the first version of this struct */
+    double wall_mm;               /* required; at least 2 voxels */
+    const cw_drain *drains;       /* drain_count of them */
+    size_t drain_count;           /* default: none, the cavities stay closed */
+    double voxel_mm;              /* default: 1/4 of the wall or of the narrowest drain; with
                                max_bytes, as coarse as the limit requires, up to 1/2 */
-    bool no_measure;        /* default: the wall is measured */
-    int threads;            /* default: all */
-    size_t max_bytes;       /* default: no limit */
-    cw_progress progress;   /* default: none */
+    bool no_measure;              /* default: the wall is measured */
+    int threads;                  /* default: all */
+    size_t max_bytes;             /* default: no limit */
+    cw_progress progress;         /* default: none */
+    const cw_infill_desc *infill; /* lattice in the cavities; default: none. Voxels are at most
+                                     1/4 of its walls, whatever max_bytes is */
 } cw_hollow_desc;
 
 /* Facts on a finished hollowing. */
@@ -150,13 +179,21 @@ typedef struct cw_hollow_facts {
                                         cw_quality_measure() counts them with shells, with those
                                         of the mesh */
     size_t filled;                   /* cavities smaller than a ball as wide as the wall is
-                                        thick: they are not made */
+                                        thick, and with a lattice those that no drain meets: they
+                                        are not made */
     double filled_mm3;               /* volume of all of them together */
     double removed_mm3;              /* volume of the mesh minus volume of the result */
     double wall_min_mm, wall_max_mm; /* the smallest and largest distance of points of the
                                         cavities' surfaces from the outer surface; 0: not
                                         measured. Where drains begin, the wall before they were
                                         made */
+    size_t drains;                   /* made: with a lattice one for each channel */
+    size_t loose;            /* pieces of a lattice that drains cut off: they are left out */
+    size_t infill_samples;   /* points at which walls of the lattice were measured */
+    double infill_min_mm;    /* thickness along normals of the middle, the thinnest; 0: not
+                                measured */
+    double infill_median_mm; /* the median of them */
+    double infill_max_mm;    /* the thickest */
 } cw_hollow_facts;
 
 /* Hollows a solid and leaves a wall.
@@ -167,15 +204,23 @@ typedef struct cw_hollow_facts {
  * them keep their place, and triangles that they do not meet stay whole. Shells that cross are united then, and
  * normals, if any, are computed again by cw_mesh_normals(). Other attributes are not kept.
  *
+ * A lattice stands in the cavities, and is one with the wall around it. Its cells are counted from the
+ * middle of the mesh's box. Distances from its middle are exact, so its walls are as thick as asked
+ * within the error of voxels. It parts each cavity into two channels. Drains are made for each channel
+ * of at least a quarter of the largest one's volume that no drain in that direction meets yet. Channels
+ * that no drain meets are filled then: none stays closed. Without drains the channels stay closed.
+ *
  * out      filled on success, emptied on failure; free it with cw_mesh_free()
  * facts    may be NULL
  *
  * Returns  CW_ERR_ARGUMENT  no wall; a wall or a drain thinner than 2 voxels; a direction of
- *                           length 0; or as cw_level_set_from_mesh()
+ *                           length 0; cells without open channels; or as cw_level_set_from_mesh()
  *          CW_ERR_EMPTY     no point is deep enough for a cavity inside the wall
  *          CW_ERR_CHECK     rounding finds no surface without crossings around the drains, or
  *                           makes those of the cavities cross themselves
- *          else as cw_level_set_from_mesh(), cw_extract(), cw_distance_to_mesh() */
+ *          else as cw_level_set_from_mesh(), cw_extract(), cw_distance_to_mesh()
+ * Threads  the same to the bit for any number
+ * Source   lattices by their nodal approximations [Wohlgemuth2001], nearest points [Hartmann1999] */
 CW_NODISCARD CW_API cw_status cw_mesh_hollow(const cw_mesh *mesh, const cw_hollow_desc *desc,
                                              cw_mesh *out, cw_hollow_facts *facts,
                                              cw_error *err);

@@ -286,6 +286,13 @@ class cw_keeps(enum.IntEnum):
     CW_KEEPS_ALL = 32767
 
 
+class cw_infill_kind(enum.IntEnum):
+    CW_INFILL_GYROID = 0
+    CW_INFILL_SCHWARZ_P = 1
+    CW_INFILL_DIAMOND = 2
+    CW_INFILL_COUNT = 3
+
+
 class cw_mode(enum.IntEnum):
     CW_MODE_MESH = 0
     CW_MODE_COMPOSITE = 1
@@ -2807,6 +2814,27 @@ cw_drain._fields_ = [
 ]
 
 
+class cw_infill_desc(Structure):
+    version: int
+    kind: int
+    cell_mm: float
+    wall_mm: float
+    end_wall_mm: float
+    depth_mm: float
+    by: Any
+
+
+cw_infill_desc._fields_ = [
+    ("version", c_uint32),
+    ("kind", c_int),
+    ("cell_mm", c_double),
+    ("wall_mm", c_double),
+    ("end_wall_mm", c_double),
+    ("depth_mm", c_double),
+    ("by", POINTER(cw_volume)),
+]
+
+
 class cw_hollow_desc(Structure):
     version: int
     wall_mm: float
@@ -2817,6 +2845,7 @@ class cw_hollow_desc(Structure):
     threads: int
     max_bytes: int
     progress: Any
+    infill: Any
 
 
 cw_hollow_desc._fields_ = [
@@ -2829,6 +2858,7 @@ cw_hollow_desc._fields_ = [
     ("threads", c_int),
     ("max_bytes", c_size_t),
     ("progress", cw_progress),
+    ("infill", POINTER(cw_infill_desc)),
 ]
 
 
@@ -2841,6 +2871,12 @@ class cw_hollow_facts(Structure):
     removed_mm3: float
     wall_min_mm: float
     wall_max_mm: float
+    drains: int
+    loose: int
+    infill_samples: int
+    infill_min_mm: float
+    infill_median_mm: float
+    infill_max_mm: float
 
 
 cw_hollow_facts._fields_ = [
@@ -2852,6 +2888,12 @@ cw_hollow_facts._fields_ = [
     ("removed_mm3", c_double),
     ("wall_min_mm", c_double),
     ("wall_max_mm", c_double),
+    ("drains", c_size_t),
+    ("loose", c_size_t),
+    ("infill_samples", c_size_t),
+    ("infill_min_mm", c_double),
+    ("infill_median_mm", c_double),
+    ("infill_max_mm", c_double),
 ]
 
 
@@ -4354,6 +4396,7 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "cw_level_set_available": (c_bool, []),
     "cw_level_set_from_mesh": (c_int, [POINTER(cw_mesh), POINTER(cw_level_set_desc), POINTER(cw_volume), POINTER(cw_error)]),
     "cw_mesh_offset": (c_int, [POINTER(cw_mesh), POINTER(cw_offset_desc), POINTER(cw_mesh), POINTER(cw_offset_facts), POINTER(cw_error)]),
+    "cw_infill_name": (c_char_p, [c_int]),
     "cw_mesh_hollow": (c_int, [POINTER(cw_mesh), POINTER(cw_hollow_desc), POINTER(cw_mesh), POINTER(cw_hollow_facts), POINTER(cw_error)]),
     "cw_transfer_check": (c_int, [POINTER(cw_transfer), POINTER(cw_error)]),
     "cw_transfer_at": (None, [POINTER(cw_transfer), c_double, POINTER(c_double), POINTER(c_double)]),

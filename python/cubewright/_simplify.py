@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from ctypes import byref, c_size_t
+from ctypes import byref, c_size_t, pointer
 from dataclasses import dataclass
 from typing import Any
 
@@ -23,8 +23,10 @@ from ._options import (
     take_threads,
 )
 from ._progress import Progress, Reporter
+from ._volume import Volume, take_volume
 
 SMOOTH_METHODS = ("taubin", "hc", "fair")
+INFILLS = ("gyroid", "schwarz-p", "diamond")
 
 
 def _describe(
@@ -278,23 +280,56 @@ def offset(
     return out
 
 
+def _take_infill(infill: Any, by: Any, mesh: Mesh) -> tuple[c.cw_infill_desc | None, Volume | None]:
+    """Returns the options of a lattice, and the volume that must outlive them."""
+    if infill is None:
+        if by is not None:
+            raise ValueError("infill_by needs infill")
+        return None, None
+    if isinstance(infill, str) or not isinstance(infill, Sequence) or len(infill) not in (3, 4):
+        raise TypeError("infill must be a kind, a cell, and one or two walls, such as ('gyroid', '8mm', '0.8mm')")
+    kind, cell, *walls = infill
+    lengths = [take_length("infill's wall", wall, mesh) for wall in walls]
+    desc = c.cw_infill_desc(
+        kind=take_choice("infill", kind, INFILLS),
+        cell_mm=take_length("infill's cell", cell, mesh),
+        wall_mm=lengths[0],
+        end_wall_mm=lengths[1] if len(lengths) == 2 else 0,
+    )
+    if by is None:
+        return desc, None
+    if isinstance(by, (str, int, float)):
+        desc.depth_mm = take_length("infill_by", by, mesh)
+        return desc, None
+    volume = take_volume(by)
+    desc.by = pointer(volume._struct)
+    return desc, volume
+
+
 def hollow(
     mesh: Mesh,
     wall: float | str,
     *,
     drains: Sequence[tuple[float | str, Sequence[float]]] = (),
     voxel: float | str = 0.0,
+    infill: Sequence[Any] | None = None,
+    infill_by: Any = None,
     max_bytes: int = 0,
     threads: int = 0,
     progress: Progress = None,
 ) -> Mesh:
     """Returns a solid with a cavity inside a wall, to save print material.
 
-    wall    a length; drains: pairs of a diameter and a direction (x, y, z) of holes to the outside
+    wall       a length; drains: pairs of a diameter and a direction (x, y, z) of holes to the outside
+    infill     a lattice in the cavity: 'gyroid', 'schwarz-p' or 'diamond', the edge of a cell, and the thickness of
+               its walls, such as ("gyroid", "8mm", "0.8mm"); a second thickness needs infill_by
+    infill_by  the walls change to the second thickness by it: a depth below the cavity's surface, a length; or a
+               volume, from its least to its greatest value
     Raises Error as offset(); EMPTY where no point is deep enough.
     """
     source = take_mesh("mesh", mesh)
     reporter = Reporter(progress)
+    lattice, graded = _take_infill(infill, infill_by, mesh)
     holes = (c.cw_drain * max(len(drains), 1))()
     for hole, (diameter, direction) in zip(holes, drains):
         hole.diameter_mm = take_length("a drain's diameter", diameter, mesh)
@@ -308,6 +343,7 @@ def hollow(
         threads=take_threads(threads),
         max_bytes=take_count("max_bytes", max_bytes),
         progress=reporter.struct,
+        infill=pointer(lattice) if lattice else None,
     )
     out = Mesh._from_c(c.cw_mesh())
     reporter.call(lib.cw_mesh_hollow, byref(source), byref(desc), byref(out._struct), None)

@@ -7,6 +7,7 @@
 #include "core/base/status.h"
 #include "core/geometry/box.h"
 #include "core/geometry/bvh_segment.h"
+#include "core/geometry/triangle.h"
 #include "core/geometry/vec3.h"
 #include "core/mesh/mesh_triangle.h"
 #include "core/mesh/triangle_boxes.h"
@@ -68,24 +69,11 @@ typedef struct ray {
     size_t hit;
 } ray;
 
-/* Returns the share of a vector after which a ray meets a triangle, or INFINITY [Moeller1997]. */
 static double meet_triangle(const ray *r, size_t triangle)
 {
-    double p[3][3], sides[2][3], across[3], from[3], around[3];
+    double p[3][3];
     cwi_mesh_corners(r->field->mesh, triangle, p);
-    for (int s = 0; s < 2; s++)
-        for (int a = 0; a < 3; a++)
-            sides[s][a] = p[s + 1][a] - p[0][a];
-    cwi_cross(r->vector, sides[1], across);
-    const double det = cwi_dot(sides[0], across);
-    if (det == 0)
-        return INFINITY;
-    cwi_sub(r->from, p[0], from);
-    const double u = cwi_dot(from, across) / det;
-    cwi_cross(from, sides[0], around);
-    const double v = cwi_dot(r->vector, around) / det;
-    const bool is_inside = u >= 0 && v >= 0 && u + v <= 1;
-    return is_inside ? cwi_dot(sides[1], around) / det : INFINITY;
+    return cwi_triangle_ray((const double(*)[3])p, r->from, r->vector);
 }
 
 static bool visit_triangle(void *context, size_t slot)

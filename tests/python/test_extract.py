@@ -176,6 +176,25 @@ class Surfaces(Case):
         self.assertGreater(cw.check(cw.offset(mesh, 1)).quality["volume_mm3"], full)
         self.assertLess(cw.check(cw.hollow(mesh, 2)).quality["volume_mm3"], 0.8 * full)
 
+    def test_lattices(self):
+        self.need("level-set")
+        ball = cw.extract(make_ball(), 0)
+        low, high = ball.bounds
+        size = float((high - low).max())
+        lattice = ("gyroid", size / 2, size / 14)
+        wall = size / 14
+        filled = cw.hollow(ball, wall, infill=lattice)
+        self.assertGreater(cw.check(filled).quality["volume_mm3"], cw.check(cw.hollow(ball, wall)).quality["volume_mm3"])
+        ramp = cw.Volume(np.arange(27, dtype="f4").reshape(3, 3, 3), spacing=size / 2, origin=low)
+        for by in (size / 8, ramp):
+            graded = cw.hollow(ball, wall, infill=(*lattice, size / 8), infill_by=by)
+            self.assertGreater(cw.check(graded).quality["volume_mm3"], cw.check(filled).quality["volume_mm3"])
+        with self.fails(cw.Status.ARGUMENT):
+            cw.hollow(ball, wall, infill=("diamond", size / 14, wall))
+        for wrong, error in (("gyroid", TypeError), (("cube", 1, 1), ValueError), (("gyroid", 1), TypeError)):
+            self.assertRaises(error, cw.hollow, ball, wall, infill=wrong)
+        self.assertRaises(ValueError, cw.hollow, ball, wall, infill_by=1)
+
     def test_labels_share_their_interfaces(self):
         volume = cw.make("labels/cells", dims=40, labels=12, type="u8")
         found = cw.extract_labels(volume)
