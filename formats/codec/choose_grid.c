@@ -111,9 +111,10 @@ typedef struct grid_search {
 /* Gives parts the positions of an array, or those that they came with. */
 static void set_positions(grid_search *s, float *positions)
 {
-    for (size_t p = 0; p < s->parts->count; p++) {
-        s->parts->items[p].mesh.positions = positions ? positions : s->given[p].positions;
-        positions += positions ? 3 * s->given[p].vertex_count : 0;
+    for (size_t p = 0, point = 0; p < s->parts->count; p++) {
+        s->parts->items[p].mesh.positions =
+            positions ? positions + 3 * point : s->given[p].positions;
+        point += s->given[p].vertex_count;
     }
 }
 
