@@ -213,7 +213,7 @@ static void a_mesh_comes_back(void **state)
         const double unit = units[n / 3];
         cw_mesh mesh = test_extract_field(fields[n % 3], 40);
         const double zero[3] = {0, 0, 0};
-        cw_volume grid = make_grid(48, 90.0 / 48 * unit);
+        cw_volume grid = make_grid(64, 90.0 / 48 * unit);
         test_move_mesh(&mesh, 0.3 * (double)n, unit, zero);
         const double side = 90.0 / 48 * unit;
         for (int partial = 0; partial < 2; partial++) {
