@@ -426,13 +426,10 @@ static double find_edge(const cw_volume *v)
 static void find_inverse(cwi_snapping *s)
 {
     const cw_volume *v = &s->grid->volume;
-    const double determinant = cwi_affine_determinant(v->affine[0]);
-    double cofactor[3][3], sum_sq = 0;
-    cwi_affine_cofactor(v->affine[0], cofactor);
+    double sum_sq = 0;
+    cwi_affine_invert(v->affine[0], s->inverse);
     for (int r = 0; r < 3; r++) {
         s->centre[r] = 0.5 * (double)(v->dim[r] - 1) + 1;
-        for (int c = 0; c < 3; c++)
-            s->inverse[r][c] = cofactor[c][r] / determinant;
         sum_sq += cwi_dot(s->inverse[r], s->inverse[r]);
     }
     s->shrink = 1 / sqrt(sum_sq);

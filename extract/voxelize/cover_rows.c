@@ -17,12 +17,6 @@ typedef struct piece {
     double cover, partial;
 } piece;
 
-typedef struct rows {
-    const cwi_voxelize *v;
-    cwi_row_events events;
-    size_t low, high; /* the first layer, and the one behind the last */
-} rows;
-
 /* A convex polygon: a triangle that at most six planes cut, by one more corner each. */
 typedef struct polygon {
     int count;
@@ -83,7 +77,7 @@ static bool find_cells(const polygon *g, int axis, int64_t first, int64_t last, 
 }
 
 /* Stores a piece that is in one voxel, or before the grid. */
-static void add_piece(rows *r, const polygon *g, uint32_t row, size_t mesh, int64_t i)
+static void add_piece(cwi_block_rows *r, const polygon *g, uint32_t row, size_t mesh, int64_t i)
 {
     double area = 0, moment = 0; /* twice; along x */
     for (int n = 2; n < g->count; n++) {
@@ -123,7 +117,7 @@ static void clip_cells(polygon *g, int axis, int64_t low, int64_t high)
     split_polygon(&above, axis, (double)high + 0.5, g, &below);
 }
 
-static void cover_row(rows *r, polygon *rest, uint32_t row, size_t mesh)
+static void cover_row(cwi_block_rows *r, polygon *rest, uint32_t row, size_t mesh)
 {
     const int64_t end = (int64_t)r->v->volume->dim[0];
     int64_t low, high;
@@ -137,7 +131,7 @@ static void cover_row(rows *r, polygon *rest, uint32_t row, size_t mesh)
     }
 }
 
-static void cover_layer(rows *r, polygon *rest, size_t layer, size_t mesh)
+static void cover_layer(cwi_block_rows *r, polygon *rest, size_t layer, size_t mesh)
 {
     const int64_t last = (int64_t)r->v->volume->dim[1] - 1;
     int64_t low, high;
@@ -152,7 +146,7 @@ static void cover_layer(rows *r, polygon *rest, size_t layer, size_t mesh)
     }
 }
 
-static void cover_triangle(rows *r, size_t triangle, size_t mesh)
+static void cover_triangle(cwi_block_rows *r, size_t triangle, size_t mesh)
 {
     const double *points[3];
     polygon rest = {.count = 3}, part;
@@ -240,34 +234,23 @@ static void sum_meshes(const piece *pieces, size_t count, size_t dim,
 void cwi_voxelize_coverage(void *state, size_t block)
 {
     cwi_voxelize *v = state;
-    const size_t *dim = v->volume->dim, low = block * CWI_VOXELIZE_LAYERS,
-                 high = low + CWI_VOXELIZE_LAYERS < dim[2] ? low + CWI_VOXELIZE_LAYERS : dim[2],
-                 row_count = (high - low) * dim[1];
-    rows r = {.v = v, .low = low, .high = high};
-    size_t mesh = 0;
-    for (size_t n = v->first[block]; n < v->first[block + 1]; n++) {
-        mesh = cwi_voxelize_mesh(v, v->list[n], mesh);
-        cover_triangle(&r, v->list[n], mesh);
-    }
-    size_t *first = cwi_alloc_array(row_count + 1, sizeof *first);
-    piece *sorted = first && !r.events.failed
-                        ? cwi_row_events_sort(&r.events, sizeof *sorted, row_count, first)
-                        : NULL;
-    const piece **order = cwi_alloc_array(r.events.count, sizeof *order);
-    float *voxels = (float *)cw_volume_voxels(v->volume) + low * dim[1] * dim[0];
-    if (!sorted || !order)
+    const size_t *dim = v->volume->dim;
+    cwi_block_rows r;
+    bool ok = cwi_block_rows_fill(&r, v, block, sizeof(piece), cover_triangle);
+    const piece *sorted = r.sorted, **order = cwi_alloc_array(r.events.count, sizeof *order);
+    float *voxels = (float *)cw_volume_voxels(v->volume) + r.low * dim[1] * dim[0];
+    ok = ok && order;
+    if (!ok)
         cwi_set_flag(&v->no_memory);
-    for (size_t row = 0; row < row_count && sorted && order; row++) {
-        const size_t count = first[row + 1] - first[row];
+    for (size_t row = 0; row < r.count && ok; row++) {
+        const size_t count = r.first[row + 1] - r.first[row];
         for (size_t n = 0; n < count; n++)
-            order[n] = sorted + first[row] + n;
+            order[n] = sorted + r.first[row] + n;
         sort_row(order, count);
         fill_row(order, count, dim[0], voxels + row * dim[0]);
     }
     if (sorted)
         sum_meshes(sorted, r.events.count, dim[0], v->counts + block * v->count);
     cwi_free(order);
-    cwi_free(sorted);
-    cwi_free(first);
-    cwi_free(r.events.items);
+    cwi_block_rows_free(&r);
 }

@@ -27,12 +27,6 @@ typedef struct corner {
     int64_t x, yz[2];
 } corner;
 
-typedef struct rows {
-    const cwi_voxelize *v;
-    cwi_row_events events;
-    size_t low, high; /* the first layer, and the one behind the last */
-} rows;
-
 static int64_t min_of_three(int64_t a, int64_t b, int64_t c)
 {
     const int64_t low = a < b ? a : b;
@@ -83,8 +77,8 @@ static void narrow_rows(const corner c[3], int64_t z, int64_t lattice, int64_t *
 }
 
 /* Stores the crossings of a triangle with the rows of one layer. */
-static void cross_layer(rows *r, const corner c[3], size_t mesh, int turn, int64_t layer,
-                        int64_t low, int64_t high)
+static void cross_layer(cwi_block_rows *r, const corner c[3], size_t mesh, int turn,
+                        int64_t layer, int64_t low, int64_t high)
 {
     const cwi_voxelize *v = r->v;
     const int64_t z = layer * v->lattice;
@@ -111,7 +105,7 @@ static void cross_layer(rows *r, const corner c[3], size_t mesh, int turn, int64
     }
 }
 
-static void cross_triangle(rows *r, size_t triangle, size_t mesh)
+static void cross_triangle(cwi_block_rows *r, size_t triangle, size_t mesh)
 {
     const cwi_voxelize *v = r->v;
     const double *points[3];
@@ -211,31 +205,18 @@ static void fill_row(const cwi_voxelize *v, const crossing *row, size_t count, v
 void cwi_voxelize_labels(void *state, size_t block)
 {
     cwi_voxelize *v = state;
-    const size_t *dim = v->volume->dim, low = block * CWI_VOXELIZE_LAYERS,
-                 high = low + CWI_VOXELIZE_LAYERS < dim[2] ? low + CWI_VOXELIZE_LAYERS : dim[2],
-                 row_count = (high - low) * dim[1];
-    rows r = {.v = v, .low = low, .high = high};
-    size_t mesh = 0;
-    for (size_t n = v->first[block]; n < v->first[block + 1]; n++) {
-        mesh = cwi_voxelize_mesh(v, v->list[n], mesh);
-        cross_triangle(&r, v->list[n], mesh);
-    }
-    size_t *first = cwi_alloc_array(row_count + 1, sizeof *first);
-    crossing *sorted = first && !r.events.failed
-                           ? cwi_row_events_sort(&r.events, sizeof *sorted, row_count, first)
-                           : NULL;
-    char *voxels = (char *)cw_volume_voxels(v->volume) +
-                   low * dim[1] * dim[0] * cw_type_size(v->volume->type);
-    if (!sorted)
+    const size_t *dim = v->volume->dim, bytes = cw_type_size(v->volume->type);
+    cwi_block_rows r;
+    const bool ok = cwi_block_rows_fill(&r, v, block, sizeof(crossing), cross_triangle);
+    crossing *sorted = r.sorted;
+    char *voxels = (char *)cw_volume_voxels(v->volume) + r.low * dim[1] * dim[0] * bytes;
+    if (!ok)
         cwi_set_flag(&v->no_memory);
-    for (size_t row = 0; row < row_count && sorted; row++) {
-        const size_t count = first[row + 1] - first[row];
-        sort_row(sorted + first[row], count);
-        fill_row(v, sorted + first[row], count,
-                 voxels + row * dim[0] * cw_type_size(v->volume->type),
+    for (size_t row = 0; row < r.count && ok; row++) {
+        const size_t count = r.first[row + 1] - r.first[row];
+        sort_row(sorted + r.first[row], count);
+        fill_row(v, sorted + r.first[row], count, voxels + row * dim[0] * bytes,
                  v->counts + block * v->count);
     }
-    cwi_free(sorted);
-    cwi_free(first);
-    cwi_free(r.events.items);
+    cwi_block_rows_free(&r);
 }

@@ -167,15 +167,10 @@ int cwi_voxel_grid_map(const cw_volume *grid, const cw_mesh *mesh, int threads,
                        double (*points)[3])
 {
     mapping m = {.mesh = mesh, .points = points};
-    double cofactor[3][3];
-    const double determinant = cwi_affine_determinant(grid->affine[0]);
-    cwi_affine_cofactor(grid->affine[0], cofactor);
-    for (int a = 0; a < 3; a++) {
+    cwi_affine_invert(grid->affine[0], m.inverse);
+    for (int a = 0; a < 3; a++)
         m.shift[a] = mesh->origin[a] - grid->affine[a][3];
-        for (int b = 0; b < 3; b++)
-            m.inverse[a][b] = cofactor[b][a] / determinant;
-    }
     cwi_parallel_for_all((mesh->vertex_count + CHUNK - 1) / CHUNK, CHUNK, threads, map_chunk,
                          &m);
-    return determinant < 0 ? -1 : 1;
+    return cwi_affine_determinant(grid->affine[0]) < 0 ? -1 : 1;
 }

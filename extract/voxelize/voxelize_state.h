@@ -40,12 +40,23 @@ typedef struct cwi_row_events {
 /* Returns where the next element goes, or NULL when memory is out. */
 void *cwi_row_events_add(cwi_row_events *events, size_t size);
 
-/* Sorts elements whose first member is the uint32_t number of a row into the order of the rows; those of a
- * row keep their order.
- * first    rows + 1: set to the first element of each row
- * Returns  the sorted elements, for cwi_free(), or NULL when memory is out */
-void *cwi_row_events_sort(const cwi_row_events *events, size_t size, size_t rows,
-                          size_t *first);
+/* The rows of a block, and the events that triangles leave in them. */
+typedef struct cwi_block_rows {
+    const cwi_voxelize *v;
+    cwi_row_events events; /* the first member of each is the uint32_t number of its row */
+    size_t low, high;      /* the first layer, and the one behind the last */
+    size_t count;          /* rows */
+    size_t *first;         /* count + 1: of each row, in `sorted` */
+    void *sorted; /* the events by row; those of a row in the order in which they came */
+} cwi_block_rows;
+
+/* Lets each triangle of a block leave its events, and sorts them.
+ * size     bytes of an event
+ * leave    adds the events of a triangle of a mesh
+ * Returns  false when memory is out; free with cwi_block_rows_free() in any case */
+bool cwi_block_rows_fill(cwi_block_rows *rows, const cwi_voxelize *v, size_t block, size_t size,
+                         void (*leave)(cwi_block_rows *rows, size_t triangle, size_t mesh));
+void cwi_block_rows_free(cwi_block_rows *rows);
 
 /* Fill the layers of a block. Work on different blocks may go on at the same time. */
 void cwi_voxelize_labels(void *state, size_t block);

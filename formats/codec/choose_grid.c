@@ -181,7 +181,7 @@ static cw_status find_grid(grid_search *s, cw_compression kind, double tolerance
     return st;
 }
 
-static cw_status choose(grid_search *s, const cw_write_desc *desc, cw_error *err)
+static cw_status search_grid(grid_search *s, const cw_write_desc *desc, cw_error *err)
 {
     const double tolerance =
         desc->tolerance_mm > 0 ? desc->tolerance_mm : default_tolerance(s->parts, s->grid);
@@ -222,7 +222,7 @@ cw_status cwi_grid_choose(cwi_quantization_grid *grid, cwi_parts *parts,
         given[p] = parts->items[p].mesh;
     cw_status st =
         isfinite(grid->range)
-            ? choose(&s, desc, err)
+            ? search_grid(&s, desc, err)
             : cwi_fail(err, CW_ERR_LIMIT, "the box is too large to be divided into steps");
     *settled = s.settled;
     cwi_settler_free(&s.settler);
