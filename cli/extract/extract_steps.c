@@ -62,10 +62,10 @@ static cw_simplify_desc simplify_desc(const cli_extract_run *s, double error)
 
 /* Unless it is said otherwise, the normals of caps part where triangles are large, and the file has a place for
  * them. */
-static bool parts_caps(const cli_extract_args *args, const cli_volume *volume)
+static bool parts_caps(const cli_extract_args *args)
 {
     const cw_format *format = cw_mesh_format(args->output, args->format);
-    return !args->crease.given && !args->open && !volume->streams && !args->labels &&
+    return !args->crease.given && !args->open && !args->labels &&
            (args->lod.count || cli_extract_is_simplified(args)) && format &&
            format->keeps & CW_KEEPS_CREASES;
 }
@@ -90,7 +90,7 @@ void cli_extract_describe_stages(const cli_extract_args *args, const cli_volume 
         .atlas = args->texture.uv ? &set->atlas : NULL,
         .bake = cli_find_maps(&args->texture) ? &set->bake : NULL,
         .crease_degrees = cli_crease_degrees(&args->crease),
-        .crease_caps = parts_caps(args, volume),
+        .crease_caps = parts_caps(args),
         .lod = args->lod.n,
         .lod_count = args->lod.count,
     };

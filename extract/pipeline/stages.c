@@ -105,6 +105,7 @@ enum {
     PARTS = CWI_ON_PARTS,
     NORMALS = CWI_FIELD_NORMALS,
     OPEN = CWI_CLOSEDNESS,
+    REDUCED = CWI_OR_REDUCED,
 };
 
 /* clang-format off */
@@ -124,7 +125,7 @@ const cwi_stage cwi_recipe[CW_STAGE_COUNT] = {
     {CW_STAGE_LOD,        wants_levels,         WHOLE | LABELS, 0,       false, cwi_make_levels},
     {CW_STAGE_ATLAS,      wants_atlas,          WHOLE,          0,       false, cwi_lay_flat},
     {CW_STAGE_NORMALS,    wants_normals,        LABELS | PARTS, 0,       true,  cwi_add_normals},
-    {CW_STAGE_CREASES,    wants_creases,        WHOLE | LABELS, 0,       true,  cwi_part_normals},
+    {CW_STAGE_CREASES,    wants_creases,        WHOLE | REDUCED | LABELS, 0, true,   cwi_part_normals},
     {CW_STAGE_COLOR,      wants_color,          WHOLE,          0,       true,  cwi_color_surface},
     {CW_STAGE_MAPS,       wants_maps,           WHOLE,          0,       true,  cwi_bake_maps},
     {CW_STAGE_CHECK,      wants_check,          LABELS | PARTS, 0,       true,  cwi_check_surface},
@@ -185,11 +186,13 @@ static const char *find_objection(cw_surface_source source, cw_stage stage, unsi
 {
     const unsigned needs = find_row(stage)->needs;
     const bool in_pieces = source == CW_SOURCE_SLICES || source == CW_SOURCE_PARTS;
+    const bool is_reduced =
+        source == CW_SOURCE_SLICES && needs & REDUCED && stages & 1u << CW_STAGE_SIMPLIFY;
     if (source == CW_SOURCE_LABELS && !(needs & LABELS))
         return "is for a single surface; labels share their interfaces";
     if (source == CW_SOURCE_SLICES && needs & SPOOL && stages & 1u << CW_STAGE_SIMPLIFY)
         return "beside simplify needs the whole surface in memory";
-    if (in_pieces && needs & WHOLE)
+    if (in_pieces && needs & WHOLE && !is_reduced)
         return "needs the whole surface in memory";
     if (in_pieces && needs & VOXELS)
         return "needs all voxels in memory";

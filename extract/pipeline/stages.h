@@ -7,12 +7,13 @@
 /* Needs of a stage, and sources beside a volume and its slices that it is made for. Without any, it
  * takes a mesh in memory or, of slices, the spool of the run. */
 enum {
-    CWI_WHOLE_MESH = 1, /* the whole surface in memory */
-    CWI_SPOOL = 2,      /* the whole surface: in memory or in the spool */
-    CWI_VOXELS = 4,     /* the volume that it came from, in memory */
-    CWI_CLOSED = 8,     /* no part of it was left out that cameras do not see */
-    CWI_ON_LABELS = 16, /* made for labels, which share their interfaces: see run_labels.c */
-    CWI_ON_PARTS = 32,  /* made for parts: they or what joins them do it, not the pipeline */
+    CWI_WHOLE_MESH = 1,  /* the whole surface in memory */
+    CWI_SPOOL = 2,       /* the whole surface: in memory or in the spool */
+    CWI_VOXELS = 4,      /* the volume that it came from, in memory */
+    CWI_CLOSED = 8,      /* no part of it was left out that cameras do not see */
+    CWI_ON_LABELS = 16,  /* made for labels, which share their interfaces: see run_labels.c */
+    CWI_ON_PARTS = 32,   /* made for parts: they or what joins them do it, not the pipeline */
+    CWI_OR_REDUCED = 64, /* or what simplification left of slices, which is in memory */
 };
 
 /* Properties of a surface that a stage spoils. */

@@ -18,6 +18,11 @@ compare g.nrrd --simplify 0.3mm --normals none
 compare g.nrrd --simplify 0.3mm --placement cubic --inside below
 compare g.nrrd --simplify 0.3mm --crop 5:36,3:28,10:40
 compare g.nrrd --simplify 2k --coarsen 2
+# normals that part at creases
+for way in never always; do
+    cubewright extract g.nrrd --iso 100 -o $way.obj --simplify 2k --crease-angle 40 --stream $way --no-check -q
+done
+cmp never.obj always.obj
 cubewright make gyroid -o g.nii.gz --dims 40x30x44 --type i16 --seed 3 -q
 compare g.nii.gz --simplify 0.3mm
 if cubewright version --features | grep -q '^draco *yes'; then

@@ -576,6 +576,18 @@ static void stages_exclude_each_other(void **state)
     }
 }
 
+static void reduced_slices_are_in_memory(void **state)
+{
+    (void)state;
+    cw_error err = {0};
+    assert_ok(cw_pipeline_check(CW_SOURCE_SLICES, CREASES | 1u << CW_STAGE_SIMPLIFY, NULL, NULL,
+                                &err),
+              err);
+    assert_fails(
+        cw_pipeline_check(CW_SOURCE_SLICES, TEXT | 1u << CW_STAGE_SIMPLIFY, NULL, NULL, &err),
+        CW_ERR_ARGUMENT, "engrave needs the whole surface in memory", err);
+}
+
 static void later_versions_are_refused(void **state)
 {
     (void)state;
@@ -664,6 +676,7 @@ int main(void)
         cmocka_unit_test(labels_are_simplified_together_and_given_away_apart),
         cmocka_unit_test(sources_exclude_what_they_cannot_give),
         cmocka_unit_test(stages_exclude_each_other),
+        cmocka_unit_test(reduced_slices_are_in_memory),
         cmocka_unit_test(later_versions_are_refused),
         cmocka_unit_test(an_empty_surface_tells_the_range),
         cmocka_unit_test(an_empty_surface_tells_of_missing_values),
