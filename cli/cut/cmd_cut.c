@@ -79,7 +79,7 @@ static bool is_apart(const cli_mesh_run *r)
     return output && (strstr(output, "{name}") || strstr(output, "{part}"));
 }
 
-static cw_status check_lengths(const cli_cut_args *args, cw_error *err)
+cw_status cli_check_cut_lengths(const cli_cut_args *args, cw_error *err)
 {
     const struct {
         const char *name;
@@ -108,7 +108,7 @@ static cw_status check_values(cli_mesh_run *r, cw_error *err)
             "each piece, or choose 3MF, OBJ or glTF",
             format->name);
     r->report.several = is_apart(r) ? "parts" : NULL;
-    cw_status st = check_lengths(args, err);
+    cw_status st = cli_check_cut_lengths(args, err);
     if (st == CW_OK && args->preview)
         st = cli_check_output(args->preview, r->args->common.inputs,
                               r->args->common.input_count, err);
@@ -234,10 +234,9 @@ static cw_status take_meshes(cli_mesh_run *r, cw_error *err)
     return CW_OK;
 }
 
-static cw_status cut_mesh(cli_mesh_run *r, cw_error *err)
+cw_status cli_cut_solid(cli_mesh_run *r, cw_error *err)
 {
     cli_cut_state *s = r->state;
-    const cli_cut_args *args = args_of(r);
     double reserve_mm, low[3] = {0}, high[3] = {0};
     r->pieces.path = r->mesh.path;
     r->pieces.triangles = cli_mesh_triangles(&r->mesh);
@@ -246,8 +245,22 @@ static cw_status cut_mesh(cli_mesh_run *r, cw_error *err)
             hypot(hypot(high[0] - low[0], high[1] - low[1]), high[2] - low[2]);
     const cw_pieces_desc desc = find_settings(r, &reserve_mm);
     cw_status st = list_planes(r, reserve_mm, err);
-    if (st == CW_OK)
-        st = cw_pieces_cut(&r->mesh.mesh, s->planes, s->plane_count, &desc, &s->cut, err);
+    return st == CW_OK
+               ? cw_pieces_cut(&r->mesh.mesh, s->planes, s->plane_count, &desc, &s->cut, err)
+               : st;
+}
+
+void cli_free_cut(cli_cut_state *state)
+{
+    cw_pieces_free(&state->cut);
+    free(state->planes);
+}
+
+static cw_status cut_mesh(cli_mesh_run *r, cw_error *err)
+{
+    cli_cut_state *s = r->state;
+    const cli_cut_args *args = args_of(r);
+    cw_status st = cli_cut_solid(r, err);
     if (st == CW_OK && args->measure)
         st = cw_pieces_assemble(&s->cut, &r->mesh.mesh, r->threads, NULL, &s->assembled, err);
     if (st == CW_OK && args->preview)
@@ -323,8 +336,7 @@ static cw_status run_cut(void *args, cw_error *err)
 {
     cli_cut_state state = {0};
     const cw_status st = cli_run_mesh_command(&cut, args, &state, 2, err);
-    cw_pieces_free(&state.cut);
-    free(state.planes);
+    cli_free_cut(&state);
     return st;
 }
 

@@ -204,30 +204,41 @@ static cw_status build_preview(const cw_pieces *pieces, const cw_cut_desc *plane
     return st;
 }
 
+cw_status cli_make_cut_preview(const cw_pieces *pieces, const cw_cut_desc *planes, size_t count,
+                               cw_mesh *mesh, cw_error *err)
+{
+    preview_mesh p = {0};
+    cw_status st = build_preview(pieces, planes, count, &p, err);
+    if (st != CW_OK)
+        cw_mesh_free(&p.mesh);
+    *mesh = p.mesh;
+    return st;
+}
+
 cw_status cli_write_cut_preview(const char *path, const cw_pieces *pieces,
                                 const cw_cut_desc *planes, size_t count, int threads,
                                 cw_error *err)
 {
-    preview_mesh p = {0};
+    cw_mesh mesh;
     cw_image image = {0};
     cw_render_mesh_desc desc = {
         .width = 1280, .height = 960, .samples = 3, .threads = threads, .same_inside = true};
-    cw_status st = build_preview(pieces, planes, count, &p, err);
+    cw_status st = cli_make_cut_preview(pieces, planes, count, &mesh, err);
     cw_fit_desc fit = {.view = "front",
                        .aspect = (double)desc.width / (double)desc.height,
                        .fov_deg = 25,
                        .margin = 0.04,
                        .azimuth_deg = 32,
                        .elevation_deg = 24};
-    memcpy(fit.min, p.low, sizeof fit.min);
-    memcpy(fit.max, p.high, sizeof fit.max);
+    if (st == CW_OK)
+        cw_mesh_bounds(&mesh, fit.min, fit.max);
     if (st == CW_OK)
         st = cw_camera_fit(&fit, &desc.camera, err);
     if (st == CW_OK)
-        st = cw_render_mesh(&p.mesh, &desc, &image, err);
+        st = cw_render_mesh(&mesh, &desc, &image, err);
     if (st == CW_OK)
         st = cw_image_write(path, &image, err);
     cw_image_free(&image);
-    cw_mesh_free(&p.mesh);
+    cw_mesh_free(&mesh);
     return st;
 }

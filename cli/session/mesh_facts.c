@@ -82,7 +82,7 @@ cw_status view_make_mesh(view *v, size_t triangles, cw_mesh *simplified, const c
 {
     *facts = (view_mesh_facts){0};
     *simplified = (cw_mesh){0};
-    *mesh = &v->document.source.mesh;
+    *mesh = view_whole_mesh(v);
     if (!v->document.path)
         return cwi_fail(err, CW_ERR_ARGUMENT, "no file is open");
     if (!view_has_mesh(v))
@@ -90,12 +90,13 @@ cw_status view_make_mesh(view *v, size_t triangles, cw_mesh *simplified, const c
                         "no surface is shown: choose an isovalue, such as 'iso %.5g'",
                         view_suggest_iso(v));
     cw_status st = view_need_surface(v, VIEW_FINAL, err);
-    if (st == CW_OK && v->document.source.mesh.triangle_count == 0)
+    const cw_mesh *whole = *mesh = view_whole_mesh(v);
+    if (st == CW_OK && whole->triangle_count == 0)
         st = cwi_fail(err, CW_ERR_ARGUMENT, "the surface has no triangles");
     if (st != CW_OK)
         return st;
-    if (triangles && triangles < v->document.source.mesh.triangle_count) {
-        st = simplify_surface(v, &v->document.source.mesh, triangles, simplified, facts, err);
+    if (triangles && triangles < whole->triangle_count) {
+        st = simplify_surface(v, whole, triangles, simplified, facts, err);
         *mesh = simplified;
     } else {
         measure_from_field(v, *mesh, facts);

@@ -20,7 +20,8 @@ typedef struct view_verbs {
     size_t count;
 } view_verbs;
 extern const view_verbs view_files_verbs, view_scene_verbs, view_camera_verbs, view_curve_verbs,
-    view_save_verbs, view_script_verbs, view_measure_verbs, view_window_verbs;
+    view_save_verbs, view_script_verbs, view_measure_verbs, view_window_verbs,
+    view_pieces_verbs;
 
 #define VERB(name, takes, about, min_count, max_count, run)                                    \
     {                                                                                          \

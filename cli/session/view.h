@@ -133,6 +133,14 @@ typedef struct view_surface {
     bool refuses_live;    /* the GPU does not extract from this volume */
 } view_surface;
 
+/* The surface cut to pieces for a printer, as a picture: the mesh of the source is that of pieces pulled apart. */
+typedef struct view_pieces {
+    bool are_shown;
+    cw_mesh whole;  /* the surface itself, until they are hidden */
+    char *command;  /* that writes them; or NULL */
+    char *settings; /* options of the command cut, as they were typed; or NULL */
+} view_pieces;
+
 /* Labels of a label map, or of an overlay. */
 typedef struct view_label_map {
     char note[CLI_LABELS_TEXT]; /* why the volume is taken for a label map; "": it is not */
@@ -165,6 +173,7 @@ typedef struct view_document {
     double level;             /* between two classes of these values */
     double box[2][3];
     view_surface surface;
+    view_pieces pieces;
     view_label_map labels;
     view_overlay overlay;
     view_measured_mesh measured; /* by measure-mesh */
@@ -312,6 +321,11 @@ void view_label_at(const view *v, const double world[3], char *text, size_t size
 cli_slice_labels view_slice_labels(const view *v);
 bool view_shows_surfaces(const view *v); /* of labels */
 
+/* verbs_pieces.c: shows the whole surface again, if pieces are shown. */
+void view_hide_pieces(view *v);
+/* Returns the surface itself, also while its pieces are shown. */
+const cw_mesh *view_whole_mesh(const view *v);
+
 /* view_history.c */
 void view_remember(view *v, const char *verb);
 void view_note_camera(view *v, const char *verb); /* for camera-back, after it has moved */
@@ -450,7 +464,7 @@ void view_start_recent(view *v, const char *named);
 void view_end_recent(view *v);
 void view_remember_file(view *v); /* that is open */
 
-/* samples.c */
+/* verbs_files.c: samples. */
 bool view_has_sample(const char *name);
 /* Opens the head MRI of Debian ("head"), or a field by its name, made when it is not there. */
 CW_NODISCARD cw_status view_open_sample(view *v, const char *name, cw_error *err);

@@ -68,8 +68,9 @@ cw_status view_settle(view *v, cw_error *err)
 const view_verb *view_verb_at(size_t n)
 {
     static const view_verbs *const lists[] = {
-        &view_files_verbs, &view_scene_verbs,   &view_window_verbs, &view_camera_verbs,
-        &view_curve_verbs, &view_measure_verbs, &view_save_verbs,   &view_script_verbs};
+        &view_files_verbs,  &view_scene_verbs, &view_window_verbs,
+        &view_camera_verbs, &view_curve_verbs, &view_measure_verbs,
+        &view_pieces_verbs, &view_save_verbs,  &view_script_verbs};
     for (size_t l = 0; l < sizeof lists / sizeof *lists; n -= lists[l++]->count)
         if (n < lists[l]->count)
             return &lists[l]->rows[n];

@@ -63,14 +63,18 @@ cw_status view_need_surface(view *v, view_level level, cw_error *err)
     const render_args *args = &v->state.args;
     const bool coarse = level == VIEW_ROUGH && v->state.is_placed && can_thin(v);
     cw_mesh mesh;
-    if (view_shows_surfaces(v) && v->picture.mode == CW_MODE_MESH)
+    if (view_shows_surfaces(v) && v->picture.mode == CW_MODE_MESH) {
+        view_hide_pieces(v);
         return view_need_label_mesh(v, err);
+    }
     const bool is_there =
         surface->iso == args->iso.value &&
         (surface->level == (coarse ? 1 : 2) ||
          (surface->level == 2 && v->document.source.mesh.triangle_count <= FEW_TRIANGLES));
-    if (v->document.source.is_mesh || !args->iso.given || is_there)
+    if (v->document.source.is_mesh || !args->iso.given || is_there ||
+        (v->document.pieces.are_shown && surface->iso == args->iso.value))
         return CW_OK;
+    view_hide_pieces(v);
     const cw_extract_desc desc = {
         .isovalue = args->iso.value,
         .inside_is_low = cli_inside_is_low(args->inside, &v->document.source.volume.whole),
@@ -209,7 +213,7 @@ static cw_status space_scene(view *v, const render_args *args, cw_mode mode,
         .level = v->document.level,
         .threads = (int)args->input.threads};
     scene->camera = v->state.camera;
-    scene->mesh_look.same_inside = view_shows_surfaces(v);
+    scene->mesh_look.same_inside = view_shows_surfaces(v) || v->document.pieces.are_shown;
     scene->sampling.lean = !v->picture.is_saving;
     scene->samples = args->samples ? (int)args->samples : mode == CW_MODE_MESH ? 2 : 1;
     cw_status st = cli_make_scene(&args->scene, &subject, mode, transfer, scene, err);

@@ -66,6 +66,7 @@ bool view_has_mesh(const view *v)
 static void drop_surface(view *v)
 {
     view_surface *surface = &v->document.surface;
+    view_hide_pieces(v);
     cw_extractor_free(surface->extractor);
     cw_extractor_free(surface->coarse);
     v->document.labels.has_scene = v->document.labels.has_mesh = false;

@@ -108,6 +108,8 @@ static void put_rest(const view *v, FILE *out, const char *end)
     if (s->args.compare)
         fprintf(out, "split %.6g%s", s->left_fraction, end);
     view_put_measures(v, out, end);
+    if (v->document.pieces.are_shown)
+        fprintf(out, "pieces %s%s", v->document.pieces.settings, end);
 }
 
 static void put_files(const view *v, FILE *out)

@@ -59,6 +59,13 @@ typedef struct view_saving {
     size_t layout, background;
 } view_saving;
 
+/* Fields of the section of pieces. */
+typedef struct view_cutting {
+    char planes[256], plate[64];
+    double pegs;
+    bool dowels;
+} view_cutting;
+
 /* Keeps what each file of the window needs from frame to frame. */
 struct view_widgets {
     view_clock clock;
@@ -66,6 +73,7 @@ struct view_widgets {
     view_curve_drag curve;
     view_browser browser;
     view_saving saving;
+    view_cutting cutting;
 };
 
 /* view_loop.c */
@@ -101,11 +109,12 @@ size_t view_list_modes(const view *v, bool with_mesh, const char **names);
 void view_show_side(view *v);
 
 /* Sections of the side panel: curve_editor.c, the curve and its points in numbers;
- * compare_panel.c; measure_panel.c; views_panel.c */
+ * compare_panel.c; measure_panel.c; pieces_panel.c; views_panel.c */
 void view_curve(view *v);
 void view_show_point(view *v);
 void view_show_compare(view *v);
 void view_show_measure_section(view *v);
+void view_show_pieces_section(view *v);
 void view_show_views(view *v);
 
 /* compare_panel.c: badges on the halves of a comparison. */

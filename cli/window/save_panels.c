@@ -73,7 +73,7 @@ static size_t show_part_choice(view *v, view_saving *s)
     static const size_t divisors[] = {1, 2, 5, 10, 50};
     v->ui->choice(v->window, "Triangles", names, sizeof names / sizeof *names, &s->part);
     v->ui->tip(v->window, "Fewer triangles are made by simplification; its error is measured");
-    return s->part ? v->document.source.mesh.triangle_count / divisors[s->part] : 0;
+    return s->part ? view_whole_mesh(v)->triangle_count / divisors[s->part] : 0;
 }
 
 static bool are_facts_old(const view *v, size_t triangles)

@@ -376,6 +376,7 @@ void view_show_side(view *v)
         show_slices(v);
         view_show_measure_section(v);
         show_cut(v);
+        view_show_pieces_section(v);
         show_time(v);
         view_show_compare(v);
         view_show_views(v);
