@@ -79,22 +79,6 @@ static bool is_apart(const cli_mesh_run *r)
     return output && (strstr(output, "{name}") || strstr(output, "{part}"));
 }
 
-cw_status cli_check_cut_lengths(const cli_cut_args *args, cw_error *err)
-{
-    const struct {
-        const char *name;
-        const cli_length *length;
-    } rows[] = {{"peg-diameter", &args->diameter},
-                {"peg-length", &args->length},
-                {"clearance", &args->clearance},
-                {"wall", &args->wall}};
-    for (size_t n = 0; n < sizeof rows / sizeof *rows; n++)
-        if (rows[n].length->given && !(rows[n].length->value > 0))
-            return cwi_fail(err, CW_ERR_ARGUMENT, "--%s is %s; it must be above 0",
-                            rows[n].name, cli_length_text(rows[n].length));
-    return CW_OK;
-}
-
 static cw_status check_values(cli_mesh_run *r, cw_error *err)
 {
     const cli_cut_args *args = args_of(r);
@@ -108,8 +92,8 @@ static cw_status check_values(cli_mesh_run *r, cw_error *err)
             "each piece, or choose 3MF, OBJ or glTF",
             format->name);
     r->report.several = is_apart(r) ? "parts" : NULL;
-    cw_status st = cli_check_cut_lengths(args, err);
-    if (st == CW_OK && args->preview)
+    cw_status st = CW_OK;
+    if (args->preview)
         st = cli_check_output(args->preview, r->args->common.inputs,
                               r->args->common.input_count, err);
     if (st == CW_OK && args->preview && output)

@@ -28,9 +28,6 @@ typedef struct cli_cut_state {
 
 extern const cli_command cli_cut;
 
-/* Checks that lengths of pegs are above 0. Returns CW_ERR_ARGUMENT naming the option */
-CW_NODISCARD cw_status cli_check_cut_lengths(const cli_cut_args *args, cw_error *err);
-
 /* Finds the planes of a run whose mesh is read, and cuts it; tells the planes that a plate needs. */
 CW_NODISCARD cw_status cli_cut_solid(cli_mesh_run *r, cw_error *err);
 void cli_free_cut(cli_cut_state *state);

@@ -77,24 +77,31 @@ static cw_status measure_topology(const view *v, const cw_mesh *mesh, view_mesh_
     return CW_OK;
 }
 
-cw_status view_make_mesh(view *v, size_t triangles, cw_mesh *simplified, const cw_mesh **mesh,
-                         view_mesh_facts *facts, cw_error *err)
+cw_status view_need_whole(view *v, cw_error *err)
 {
-    *facts = (view_mesh_facts){0};
-    *simplified = (cw_mesh){0};
-    *mesh = view_whole_mesh(v);
-    if (!v->document.path)
-        return cwi_fail(err, CW_ERR_ARGUMENT, "no file is open");
     if (!view_has_mesh(v))
         return cwi_fail(err, CW_ERR_ARGUMENT,
                         "no surface is shown: choose an isovalue, such as 'iso %.5g'",
                         view_suggest_iso(v));
     cw_status st = view_need_surface(v, VIEW_FINAL, err);
-    const cw_mesh *whole = *mesh = view_whole_mesh(v);
-    if (st == CW_OK && whole->triangle_count == 0)
+    if (st == CW_OK && view_whole_mesh(v)->triangle_count == 0)
         st = cwi_fail(err, CW_ERR_ARGUMENT, "the surface has no triangles");
+    return st;
+}
+
+cw_status view_make_mesh(view *v, size_t triangles, cw_mesh *simplified, const cw_mesh **mesh,
+                         view_mesh_facts *facts, cw_error *err)
+{
+    *facts = (view_mesh_facts){0};
+    *simplified = (cw_mesh){0};
+    *mesh = NULL;
+    if (!v->document.path)
+        return cwi_fail(err, CW_ERR_ARGUMENT, "no file is open");
+    cw_status st = view_need_whole(v, err);
     if (st != CW_OK)
         return st;
+    const cw_mesh *whole = view_whole_mesh(v);
+    *mesh = whole;
     if (triangles && triangles < whole->triangle_count) {
         st = simplify_surface(v, whole, triangles, simplified, facts, err);
         *mesh = simplified;

@@ -45,37 +45,16 @@ static cw_status expect_surface(view *v, cw_error *err)
         st = cwi_fail(err, CW_ERR_ARGUMENT,
                       "pieces are those of one surface; labels are shown: write one with "
                       "'extract --labels', and open it");
-    if (st == CW_OK && !view_has_mesh(v))
-        st = cwi_fail(err, CW_ERR_ARGUMENT,
-                      "no surface is shown: choose an isovalue, such as 'iso %.5g'",
-                      view_suggest_iso(v));
-    if (st == CW_OK)
-        st = view_need_surface(v, VIEW_FINAL, err);
-    if (st == CW_OK && !view_whole_mesh(v)->triangle_count)
-        st = cwi_fail(err, CW_ERR_ARGUMENT, "the surface has no triangles");
-    return st;
+    return st == CW_OK ? view_need_whole(v, err) : st;
 }
 
 /* Parses options of the command cut. words: OWN_WORDS and options; inputs: as many */
 static cw_status parse_cut(int count, char **words, cli_cut_args *args, const char **inputs,
                            cw_error *err)
 {
-    size_t max_count = 1; /* letters of flags may be together in a word */
-    for (int n = 0; n < count; n++)
-        max_count += strlen(words[n]);
-    cli_given_option *given = calloc(max_count, sizeof *given);
-    if (!given)
-        return cwi_fail_memory(err);
     memcpy(args, cli_cut.defaults, sizeof *args);
-    args->mesh.common.given_options = given;
     cw_status st = cli_parse(&cli_cut, count, words, args, inputs, err);
-    args->mesh.common.given_options = NULL;
-    if (st == CW_OK)
-        st = cli_check_rules(&cli_cut, args, err);
-    if (st == CW_OK)
-        st = cli_check_cut_lengths(args, err);
-    free(given);
-    return st;
+    return st == CW_OK ? cli_check_rules(&cli_cut, args, err) : st;
 }
 
 /* Returns words with a blank between each, as a shell reads them; NULL: no memory. */

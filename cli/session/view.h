@@ -436,6 +436,8 @@ CW_NODISCARD cw_status view_write_picture(view *v, const view_sheet *sheet, cons
                                           cw_error *err);
 
 /* mesh_facts.c: the surface as it would be saved. */
+/* Makes the surface that is shown, for view_whole_mesh(). Returns CW_ERR_ARGUMENT when none is, or it is empty */
+CW_NODISCARD cw_status view_need_whole(view *v, cw_error *err);
 /* Makes the mesh to save and measures it.
  * triangles   how many it has at most; 0: all of the surface
  * simplified  free it with cw_mesh_free()
