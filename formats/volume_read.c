@@ -5,6 +5,7 @@
 #include "core/volume/volume.h"
 #include "formats/bytes/file_pattern.h"
 #include "formats/format_lookup.h"
+#include "formats/label_numbers.h"
 #include "formats/mesh/mesh_reader.h"
 #include "formats/raw/raw_format.h"
 #include "formats/volume/frame_claim.h"
@@ -203,6 +204,8 @@ static cw_status read_source(opened *o, const cw_read_desc *desc, cw_volume *vol
         cwi_note(desc, "%s", src.note);
     if (st == CW_OK && o->many)
         st = check_part_bytes(&src.shape, o->names.count, err);
+    if (st == CW_OK && desc->ids)
+        st = cwi_source_keep_wide(&src, err);
     src.may_widen = true;
     if (o->many) {
         src.files = o->names;
@@ -293,6 +296,8 @@ cw_status cw_volume_read(const char *path, const cw_read_desc *desc, cw_volume *
     memset(volume, 0, sizeof *volume);
     if (d.labels)
         cw_label_table_free(d.labels);
+    if (d.ids)
+        cw_label_ids_free(d.ids);
     cw_status st = check_spacing(&d, err);
     if (st == CW_OK)
         st = open_path(&o, path, &d, err);
@@ -305,6 +310,8 @@ cw_status cw_volume_read(const char *path, const cw_read_desc *desc, cw_volume *
         cw_volume_free(volume);
     if (st == CW_OK)
         st = expect_thin(&d, volume, err);
+    if (st == CW_OK && d.ids)
+        st = cwi_renumber_volume(&d, volume, err);
     if (st == CW_OK)
         tell_arrays(&o, &d, &arrays);
     else if (d.labels)
@@ -322,6 +329,7 @@ typedef struct claimed_visit {
     const cw_read_desc *desc;
     const cw_slice_visitor *visitor;
     const cw_slice_source *source; /* of the reader */
+    bool is_stored;                /* voxels are given as they are in the file */
 } claimed_visit;
 
 static cw_status read_named(void *user, size_t first, size_t count, void *to, cw_error *err)
@@ -339,19 +347,18 @@ static cw_status visit_claimed(void *user, const cw_slice_source *source, cw_err
     cw_status st = cwi_claim_volume(&c->desc->claim, &claimed.shape, err);
     if (st == CW_OK)
         st = cwi_set_nodata(c->desc, &claimed.shape, err);
+    if (st == CW_OK && c->desc->ids && !c->is_stored)
+        return cwi_visit_renumbered(c->desc, &claimed, c->visitor, err);
     return st == CW_OK ? c->visitor->visit(c->visitor->user, &claimed, err) : st;
 }
 
-cw_status cw_volume_visit(const char *path, const cw_read_desc *desc, size_t component,
-                          size_t step, const cw_slice_visitor *visitor, const char **format,
-                          cw_error *err)
+static cw_status visit_path(claimed_visit *claimed, size_t component, size_t step,
+                            const char **format, cw_error *err)
 {
-    CWI_REQUIRE(err, path, visitor);
-    CWI_REQUIRE_VERSION(err, desc, 0);
-    const cw_read_desc d = desc ? *desc : (cw_read_desc){0};
-    claimed_visit claimed = {.path = path, .desc = &d, .visitor = visitor};
+    const char *path = claimed->path;
+    const cw_read_desc d = *claimed->desc;
     cwi_slice_visit visit = {
-        .component = component, .step = step, .visit = visit_claimed, .user = &claimed};
+        .component = component, .step = step, .visit = visit_claimed, .user = claimed};
     opened o = {0};
     cw_volume none = {0};
     cw_status st = check_spacing(&d, err);
@@ -368,6 +375,24 @@ cw_status cw_volume_visit(const char *path, const cw_read_desc *desc, size_t com
         *format = o.reader ? o.reader->name : d.raw ? "raw" : NULL;
     close_path(&o);
     return st == CW_OK || visit.called ? st : cwi_fail_in(err, st, path);
+}
+
+cw_status cw_volume_visit(const char *path, const cw_read_desc *desc, size_t component,
+                          size_t step, const cw_slice_visitor *visitor, const char **format,
+                          cw_error *err)
+{
+    CWI_REQUIRE(err, path, visitor);
+    CWI_REQUIRE_VERSION(err, desc, 0);
+    const cw_read_desc d = desc ? *desc : (cw_read_desc){0};
+    claimed_visit claimed = {.path = path, .desc = &d, .visitor = visitor};
+    return visit_path(&claimed, component, step, format, err);
+}
+
+cw_status cwi_visit_stored(const char *path, const cw_read_desc *desc, size_t component,
+                           size_t step, const cw_slice_visitor *visitor, cw_error *err)
+{
+    claimed_visit claimed = {.path = path, .desc = desc, .visitor = visitor, .is_stored = true};
+    return visit_path(&claimed, component, step, NULL, err);
 }
 
 /* Returns true for files of which none has images to choose from. */

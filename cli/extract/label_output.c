@@ -67,6 +67,7 @@ static cw_status deliver_file(cli_label_run *r, size_t file, const cw_part *part
                         .found = found,
                         .preview = cli_is_preview(&r->volume)};
     how.write.sides = more ? more->sides : NULL;
+    how.write.labels = more ? more->labels : NULL;
     how.write.provenance = lines;
     how.write.provenance_count = make_provenance(r, smoothing, simplified, lines);
     cw_status st = cli_deliver(&r->report, &how, parts, count, 0, r->start, err);
@@ -207,9 +208,18 @@ static cw_status write_sides(cli_label_run *r, const char *found, cw_error *err)
     for (size_t p = 0; p < s->patch_count; p++)
         for (size_t t = s->patches[p].first; t < s->patches[p].first + s->patches[p].count; t++)
             memcpy(sides + 2 * t, s->patches[p].labels, 2 * sizeof *sides);
+    cw_label_table labels = {0};
     const cw_part part = {.mesh = &mesh, .name = "labels"};
-    const cw_write_desc more = {.sides = sides};
-    cw_status st = deliver_file(r, 0, &part, 1, 0, r->item_count, &more, found, err);
+    const cw_write_desc more = {.sides = sides, .labels = &labels};
+    cw_status st = CW_OK;
+    for (size_t n = 0; n < r->item_count && st == CW_OK; n++) {
+        cw_label label = r->items[n].label;
+        label.layer = 0;
+        st = cw_label_table_add(&labels, &label, err);
+    }
+    if (st == CW_OK)
+        st = deliver_file(r, 0, &part, 1, 0, r->item_count, &more, found, err);
+    cw_label_table_free(&labels);
     free(sides);
     return st;
 }

@@ -31,6 +31,15 @@ static bool find_neighbour(const cli_label_item *item, const cw_label_patch *pat
     return is_first || patch->labels[1] == item->label.value;
 }
 
+/* Returns the label that a value stands for beside an item. */
+static cw_label find_label(const cli_label_run *r, const cli_label_item *item, uint32_t value)
+{
+    char name[CLI_LABEL_NAME];
+    cw_label label = cli_complete_label(&r->names.table, item->layer->number, value, name);
+    label.name = NULL;
+    return label;
+}
+
 /* Prints a field of a CSV: in quotes where it needs them. */
 static void put_field(FILE *out, const char *text)
 {
@@ -54,7 +63,7 @@ static void put_row(FILE *out, const cli_label_run *r, const cli_label_item *ite
     const double voxel = voxel_mm3(r);
     const char *separator = "";
     uint32_t other;
-    fprintf(out, "%u,", item->label.value);
+    fprintf(out, "%s,", cw_label_number(&item->label, (char[CW_LABEL_NUMBER]){0}));
     put_field(out, item->name);
     fprintf(out, ",%d,%d,%d,%d,%u,%zu,", c[0], c[1], c[2], c[3], item->label.layer,
             item->voxels);
@@ -68,7 +77,10 @@ static void put_row(FILE *out, const cli_label_run *r, const cli_label_item *ite
             item->facts.quality.components);
     for (size_t p = 0; p < s->patch_count; p++)
         if (find_neighbour(item, &s->patches[p], &other)) {
-            fprintf(out, "%s%u:%.6g", separator, other, cw_label_patch_area(s, &s->patches[p]));
+            const cw_label label = find_label(r, item, other);
+            fprintf(out, "%s%s:%.6g", separator,
+                    cw_label_number(&label, (char[CW_LABEL_NUMBER]){0}),
+                    cw_label_patch_area(s, &s->patches[p]));
             separator = ";";
         }
     fputc('\n', out);
@@ -108,7 +120,7 @@ void cli_put_label_params(cli_json *j, const void *p, const cli_made *made)
     cli_json_count(j, "step", r->args->input.step);
 }
 
-static void put_neighbours(cli_json *j, const cli_label_item *item)
+static void put_neighbours(cli_json *j, const cli_label_run *r, const cli_label_item *item)
 {
     const cw_label_surfaces *s = &item->layer->surfaces;
     uint32_t other;
@@ -116,7 +128,8 @@ static void put_neighbours(cli_json *j, const cli_label_item *item)
     for (size_t p = 0; p < s->patch_count; p++)
         if (find_neighbour(item, &s->patches[p], &other)) {
             cli_json_open(j, NULL, '{');
-            cli_json_count(j, "label", other);
+            const cw_label label = find_label(r, item, other);
+            cli_json_label(j, "label", &label);
             cli_json_number(j, "area", cw_label_patch_area(s, &s->patches[p]));
             cli_json_close(j, '}');
         }
@@ -129,7 +142,7 @@ static void put_item(cli_json *j, const cli_label_run *r, const cli_label_item *
     char hex[16];
     snprintf(hex, sizeof hex, "#%02X%02X%02X", c[0], c[1], c[2]);
     cli_json_open(j, NULL, '{');
-    cli_json_count(j, "label", item->label.value);
+    cli_json_label(j, "label", &item->label);
     if (item->label.layer > 0)
         cli_json_count(j, "layer", item->label.layer);
     cli_json_text(j, "name", item->name);
@@ -142,7 +155,7 @@ static void put_item(cli_json *j, const cli_label_run *r, const cli_label_item *
     cli_json_number(j, "area", item->facts.quality.area_mm2);
     cli_json_count(j, "triangles", item->facts.quality.triangles);
     cli_json_count(j, "components", item->facts.quality.components);
-    put_neighbours(j, item);
+    put_neighbours(j, r, item);
     cli_json_stages(j, &item->facts, 0);
     cli_json_close(j, '}');
 }
@@ -163,6 +176,9 @@ void cli_put_labels(cli_json *j, const void *p)
     cli_json_open(j, "missing_labels", '[');
     for (size_t n = 0; n < r->choice.count; n++)
         if (!r->choice.labels[n].is_found)
-            cli_json_count(j, NULL, r->choice.labels[n].value);
+            cli_json_label(j, NULL,
+                           &(cw_label){.value = r->choice.labels[n].value,
+                                       .id = r->choice.labels[n].id,
+                                       .is_negative = r->choice.labels[n].is_negative});
     cli_json_close(j, ']');
 }

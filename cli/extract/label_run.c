@@ -47,6 +47,7 @@ static cw_status read_label_map(cli_label_run *r, cw_error *err)
     input.array.component.given = true; /* all are taken, unless one was stated */
     input.stream = args->stream;
     input.may_stream = true;
+    input.of_labels = true;
     cli_report_begin(&r->report);
     cw_status st = cli_read_volume(args->common.inputs[0], &input, false, &r->volume, err);
     if (st != CW_OK)
@@ -67,7 +68,8 @@ static cw_status read_label_map(cli_label_run *r, cw_error *err)
     if (st == CW_OK)
         st = cli_find_label_names(args->names, &r->volume, &r->names, err);
     if (st == CW_OK)
-        st = cli_choose_labels("--labels", args->labels, &r->names.table, &r->choice, err);
+        st = cli_choose_labels("--labels", args->labels, &r->names.table, &r->volume.ids,
+                               &r->choice, err);
     if (st == CW_OK)
         st = expect_labels(r, err);
     return st == CW_OK
@@ -93,6 +95,7 @@ static cw_status extract_component(const cli_label_run *r, uint32_t number,
                                    cw_error *err)
 {
     cli_input input = r->args->input;
+    input.of_labels = true;
     label_slices slices = {desc, surfaces};
     const cw_slice_visitor visitor = {extract_slices, &slices};
     cw_volume view;
@@ -215,8 +218,9 @@ static cw_status list_items(cli_label_run *r, cw_error *err)
 /* Fails unless a label's surface is closed (or open at the border alone) and a manifold. */
 static cw_status hold_item(const cli_label_run *r, const cli_label_item *item, cw_error *err)
 {
-    char what[32];
-    snprintf(what, sizeof what, "of label %u", item->label.value);
+    char what[48];
+    snprintf(what, sizeof what, "of label %s",
+             cw_label_number(&item->label, (char[CW_LABEL_NUMBER]){0}));
     return cli_hold_to_promise(r->volume.path, what, &item->facts.quality, r->args->open, err);
 }
 
@@ -268,7 +272,8 @@ static void end_stage(void *user, cw_stage stage, size_t before, size_t after)
 static void tell_stages(cli_label_run *r, const cli_label_item *item)
 {
     char *subject = NULL;
-    if (asprintf(&subject, "%s: label %u", r->volume.path, item->label.value) < 0)
+    if (asprintf(&subject, "%s: label %s", r->volume.path,
+                 cw_label_number(&item->label, (char[CW_LABEL_NUMBER]){0})) < 0)
         return;
     cli_tell_stages(
         &(cli_staged){.subject = subject, .facts = &item->facts, .report = &r->report});

@@ -23,6 +23,7 @@ static const struct {
     {"desc->timeout_s", "--timeout"},
     {"desc->spacing_mm", "--spacing"},
     {"desc->voxel_mm", "--voxel"},
+    {"desc->round_labels", "--round"},
     {"desc->series", "--series"},
     {"(desc->array names one)", "(--grid)"},
     {"desc->array", "--array"},

@@ -102,6 +102,13 @@ void cli_json_count(cli_json *j, const char *key, size_t value)
     fprintf(j->out, "%zu", value);
 }
 
+void cli_json_label(cli_json *j, const char *key, const cw_label *label)
+{
+    char number[CW_LABEL_NUMBER];
+    begin_value(j, key);
+    fputs(cw_label_number(label, number), j->out);
+}
+
 void cli_json_int(cli_json *j, const char *key, int64_t value)
 {
     begin_value(j, key);

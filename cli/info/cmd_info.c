@@ -233,6 +233,19 @@ static cw_status predict_extract(const info_args *args, size_t program_bytes, fa
     return st == CW_OK && iso.count ? cli_predict(&desc, &f->volume, &f->predictions, err) : st;
 }
 
+/* Reads the voxels. Integers that do not fit 32 bits can be numbers of labels. */
+static cw_status read_values(const char *path, cli_input *input, cli_volume *volume,
+                             cw_error *err)
+{
+    cw_error other;
+    cw_status st = cli_read_volume(path, input, false, volume, err);
+    if (st != CW_ERR_FORMAT)
+        return st;
+    input->of_labels = input->is_quiet = true;
+    input->array.component.given = true;
+    return cli_read_volume(path, input, false, volume, &other) == CW_OK ? CW_OK : st;
+}
+
 static cw_status find_facts(const info_args *args, facts *f, cw_error *err)
 {
     const int threads = (int)args->input.threads;
@@ -240,7 +253,7 @@ static cw_status find_facts(const info_args *args, facts *f, cw_error *err)
     const double start = cli_seconds();
     cli_input input = args->input;
     input.sample = !args->deep && !args->levels && !args->within;
-    cw_status st = cli_read_volume(args->common.inputs[0], &input, false, &f->volume, err);
+    cw_status st = read_values(args->common.inputs[0], &input, &f->volume, err);
     f->read_seconds = cli_seconds() - start;
     if (st != CW_OK)
         return st;
@@ -416,7 +429,16 @@ static bool is_sampled(const facts *f)
 static void print_values(const info_args *args, const facts *f)
 {
     const cw_statistics *r = &f->range;
-    printf("  values   %.10g to %.10g", r->min, r->max);
+    const cw_label_ids *ids = &f->volume.ids;
+    if (ids->count > 1) {
+        const cw_label first = cw_label_ids_label(ids, 1),
+                       last = cw_label_ids_label(ids, (uint32_t)ids->count - 1);
+        char low[CW_LABEL_NUMBER], high[CW_LABEL_NUMBER];
+        printf("  values   numbers of labels, %s to %s", cw_label_number(&first, low),
+               cw_label_number(&last, high));
+    } else {
+        printf("  values   %.10g to %.10g", r->min, r->max);
+    }
     if (f->volume.whole.steps > 1)
         printf(" in step %zu", args->input.step);
     if (r->not_finite)
@@ -453,6 +475,18 @@ static void json_series(cli_json *j, const cw_series *s)
         cli_json_number(j, "tilt_degrees", s->tilt_degrees);
 }
 
+/* Tells the range of values that are numbers of labels. */
+static void json_ids(cli_json *j, const cw_label_ids *ids)
+{
+    const uint32_t ends[2] = {0, (uint32_t)ids->count - 1};
+    cli_json_open(j, "range", '[');
+    for (int n = 0; n < 2; n++) {
+        const cw_label label = cw_label_ids_label(ids, ends[n]);
+        cli_json_label(j, NULL, &label);
+    }
+    cli_json_close(j, ']');
+}
+
 static void print_json(const facts *f, bool predicted)
 {
     const cw_statistics *r = &f->range;
@@ -468,7 +502,10 @@ static void print_json(const facts *f, bool predicted)
     cli_json_scales(&j, &f->scales);
     cli_json_label_facts(&j, &f->labels);
     cli_json_within(&j, &f->within);
-    cli_json_numbers(&j, "range", (const double[2]){r->min, r->max}, 2);
+    if (f->volume.ids.count)
+        json_ids(&j, &f->volume.ids);
+    else
+        cli_json_numbers(&j, "range", (const double[2]){r->min, r->max}, 2);
     if (is_sampled(f))
         cli_json_numbers(
             &j, "sampled",

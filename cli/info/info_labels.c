@@ -88,7 +88,8 @@ void cli_print_label_facts(const cli_label_facts *facts, bool is_sampled)
         const cw_label label =
             cli_complete_label(&facts->names.table, l->layer, l->value, name);
         const uint8_t *c = label.color;
-        printf("  %10u  #%02x%02x%02x  %s voxels  %s", l->value, c[0], c[1], c[2],
+        printf("  %10s  #%02x%02x%02x  %s voxels  %s",
+               cw_label_number(&label, (char[CW_LABEL_NUMBER]){0}), c[0], c[1], c[2],
                cli_count(l->voxels), name);
         if (l->layer > 0)
             printf(", in component %u", l->layer);
@@ -113,7 +114,7 @@ void cli_json_label_facts(cli_json *j, const cli_label_facts *facts)
         snprintf(hex, sizeof hex, "#%02X%02X%02X", label.color[0], label.color[1],
                  label.color[2]);
         cli_json_open(j, NULL, '{');
-        cli_json_count(j, "label", l->value);
+        cli_json_label(j, "label", &label);
         if (l->layer > 0)
             cli_json_count(j, "layer", l->layer);
         cli_json_text(j, "name", name);

@@ -40,33 +40,67 @@ static cw_status add_chosen(const char *option, cli_label_choice *choice,
     return CW_OK;
 }
 
-/* Reads "7" or "7-9". Returns false for anything else. */
-static bool read_range(const char *item, uint64_t *first, uint64_t *last)
+/* Reads "7" or "7-9"; a number of 64 bits or below 0 by itself. Returns false for anything else. */
+static bool read_range(const char *item, cw_label *first, cw_label *last)
 {
-    char *end;
-    if (!isdigit((unsigned char)*item))
+    char from[ITEM_BYTES];
+    const size_t sign = *item == '-', length = sign + strspn(item + sign, "0123456789");
+    snprintf(from, sizeof from, "%.*s", (int)length, item);
+    if (!cw_label_parse(from, first))
         return false;
-    *first = *last = strtoull(item, &end, 10);
-    if (*end == '-' && isdigit((unsigned char)end[1]))
-        *last = strtoull(end + 1, &end, 10);
-    return *end == '\0';
+    *last = *first;
+    return item[length] == '\0' ||
+           (item[length] == '-' && cw_label_parse(item + length + 1, last));
+}
+
+static uint64_t number_of(const cw_label *label)
+{
+    return label->id ? label->id : label->value;
+}
+
+/* The labels that are known: those with names, and the numbers of those with voxels. */
+typedef struct known_labels {
+    const cw_label_table *table;
+    const cw_label_ids *ids;
+} known_labels;
+
+/* Adds a label by its number. */
+static cw_status add_number(const char *option, cli_label_choice *choice, const cw_label *label,
+                            const known_labels *known, cw_error *err)
+{
+    cli_chosen_label chosen = {.value = cw_label_ids_find(known->ids, label),
+                               .id = number_of(label),
+                               .is_negative = label->is_negative,
+                               .of_all_layers = true};
+    const cw_label_table *t = known->table;
+    for (size_t n = 0; n < t->count && chosen.value == UINT32_MAX; n++) /* one without voxels */
+        if (number_of(&t->labels[n]) == chosen.id &&
+            t->labels[n].is_negative == chosen.is_negative)
+            chosen.value = t->labels[n].value;
+    return add_chosen(option, choice, chosen, err);
 }
 
 static cw_status add_range(const char *option, cli_label_choice *choice, const char *item,
-                           uint64_t first, uint64_t last, cw_error *err)
+                           const cw_label ends[2], const known_labels *known, cw_error *err)
 {
-    if (last > UINT32_MAX || first > last)
+    const uint64_t first = number_of(&ends[0]), last = number_of(&ends[1]);
+    if (first == last && ends[0].is_negative == ends[1].is_negative)
+        return add_number(option, choice, &ends[0], known, err);
+    if (ends[0].is_negative || ends[1].is_negative || first > last)
         return cwi_fail(err, CW_ERR_ARGUMENT,
-                        "%s: '%s' is no range of labels, which are 1 to 4294967295", option,
-                        item);
+                        "%s: '%s' is no range of labels, such as 7-9; those below 0 are stated "
+                        "one by one",
+                        option, item);
     if (last - first >= MAX_RANGE)
         return cwi_fail(err, CW_ERR_ARGUMENT, "%s: '%s' is longer than %d labels", option, item,
                         MAX_RANGE);
     cw_status st = CW_OK;
-    for (uint64_t value = first; value <= last && st == CW_OK; value++)
-        st = add_chosen(option, choice,
-                        (cli_chosen_label){.value = (uint32_t)value, .of_all_layers = true},
-                        err);
+    for (uint64_t n = 0; n <= last - first && st == CW_OK; n++) {
+        const uint64_t value = first + n;
+        const bool fits = value <= UINT32_MAX;
+        const cw_label label = {.value = fits ? (uint32_t)value : 0, .id = fits ? 0 : value};
+        st = add_number(option, choice, &label, known, err);
+    }
     return st;
 }
 
@@ -107,27 +141,33 @@ static cw_status add_names(const char *option, cli_label_choice *choice, const c
             continue;
         is_known = true;
         st = add_chosen(option, choice,
-                        (cli_chosen_label){.value = label->value, .layer = label->layer}, err);
+                        (cli_chosen_label){.value = label->value,
+                                           .layer = label->layer,
+                                           .id = number_of(label),
+                                           .is_negative = label->is_negative},
+                        err);
     }
     return st == CW_OK && !is_known ? fail_unknown(option, item, table, err) : st;
 }
 
 cw_status cli_choose_labels(const char *option, const char *text, const cw_label_table *table,
-                            cli_label_choice *choice, cw_error *err)
+                            const cw_label_ids *ids, cli_label_choice *choice, cw_error *err)
 {
+    const known_labels known = {table, ids};
     cw_status st = CW_OK;
     *choice = (cli_label_choice){.all = strcmp(text, "all") == 0};
     for (const char *at = text; !choice->all && st == CW_OK; at++) {
         char item[ITEM_BYTES];
-        uint64_t first, last;
+        cw_label ends[2] = {{0}};
         const size_t length = strcspn(at, ",");
         if (length == 0 || length >= sizeof item)
             return cwi_fail(err, CW_ERR_ARGUMENT,
                             "%s %s: expected is 'all', or a list such as 1,5,7-9,Liver", option,
                             text);
         snprintf(item, sizeof item, "%.*s", (int)length, at);
-        st = read_range(item, &first, &last) ? add_range(option, choice, item, first, last, err)
-                                             : add_names(option, choice, item, table, err);
+        st = read_range(item, &ends[0], &ends[1])
+                 ? add_range(option, choice, item, ends, &known, err)
+                 : add_names(option, choice, item, table, err);
         at += length;
         if (!*at)
             break;
@@ -164,13 +204,17 @@ size_t cli_list_missing(const cli_label_choice *choice, const cw_label_table *ta
     *list = '\0';
     for (size_t n = 0; n < choice->count; n++) {
         const cli_chosen_label *chosen = &choice->labels[n];
-        char name[CLI_LABEL_NAME];
+        char name[CLI_LABEL_NAME], number[CW_LABEL_NUMBER];
         if (chosen->is_found)
             continue;
-        cli_complete_label(table, chosen->layer, chosen->value, name);
+        const cw_label known = cli_complete_label(table, chosen->layer, chosen->value, name);
+        const cw_label label = {.id = chosen->id, .is_negative = chosen->is_negative};
+        cw_label_number(&label, number);
+        if (chosen->value == UINT32_MAX && !cw_label_find(table, known.layer, known.value))
+            snprintf(name, sizeof name, "label_%s", number);
         if (used < size - 1)
-            used += (size_t)snprintf(list + used, size - used, "%s%u (%.60s)",
-                                     missing ? ", " : "", chosen->value, name);
+            used += (size_t)snprintf(list + used, size - used, "%s%s (%.60s)",
+                                     missing ? ", " : "", number, name);
         missing++;
     }
     return missing;

@@ -7,7 +7,9 @@
 
 /* A label that was chosen, by a number for every layer or by its name in one. */
 typedef struct cli_chosen_label {
-    uint32_t value, layer;
+    uint32_t value, layer; /* value: of voxels; UINT32_MAX: none has the label */
+    uint64_t id;           /* as in cw_label */
+    bool is_negative;
     bool of_all_layers;
     bool is_found; /* it has voxels */
 } cli_chosen_label;
@@ -22,12 +24,13 @@ typedef struct cli_label_choice {
  * table, as patterns of the shell and in lower or upper case.
  * option   begins the messages: "--labels"
  * table    may be empty; then no name is known
+ * ids      numbers of the volume's labels, which the text states
  * choice   free it with cli_free_label_choice(), also after failure
  * Returns  CW_ERR_ARGUMENT  an item is neither, or is the background, 0; a name is not in the
  *          table, with the nearest; a range is too long; CW_ERR_NO_MEMORY */
 CW_NODISCARD cw_status cli_choose_labels(const char *option, const char *text,
-                                         const cw_label_table *table, cli_label_choice *choice,
-                                         cw_error *err);
+                                         const cw_label_table *table, const cw_label_ids *ids,
+                                         cli_label_choice *choice, cw_error *err);
 void cli_free_label_choice(cli_label_choice *choice);
 
 /* Lists the values that were chosen in a layer: count of them, to be freed with free(). Returns

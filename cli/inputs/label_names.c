@@ -57,14 +57,19 @@ cw_status cli_find_label_names(const char *path, cli_volume *volume, cli_label_n
     } else {
         st = read_beside(volume, names, err);
     }
+    const size_t count = names->table.count;
+    if (st == CW_OK)
+        st = cw_label_table_renumber(&names->table, &volume->ids, err);
+    if (st == CW_OK && volume->ids.rounded)
+        cli_say("%s: %zu voxels are rounded to whole numbers, by up to %.3g", volume->path,
+                volume->ids.rounded, volume->ids.largest_rounding);
     if (st != CW_OK)
         cli_free_label_names(names);
     else if (names->path)
-        cli_say("%s: names of %zu labels from %s (%s)", volume->path, names->table.count,
-                names->path, names->format);
-    else if (names->table.count)
-        cli_say("%s: names of %zu labels from the volume itself", volume->path,
-                names->table.count);
+        cli_say("%s: names of %zu labels from %s (%s)", volume->path, count, names->path,
+                names->format);
+    else if (count)
+        cli_say("%s: names of %zu labels from the volume itself", volume->path, count);
     return st;
 }
 
@@ -76,7 +81,8 @@ cw_label cli_complete_label(const cw_label_table *table, uint32_t layer, uint32_
     if (label.name && *label.name)
         snprintf(name, CLI_LABEL_NAME, "%s", label.name);
     else
-        snprintf(name, CLI_LABEL_NAME, "label_%u", value);
+        snprintf(name, CLI_LABEL_NAME, "label_%s",
+                 cw_label_number(&label, (char[CW_LABEL_NUMBER]){0}));
     label.name = name;
     if (!label.has_color)
         cw_label_color(value, label.color);

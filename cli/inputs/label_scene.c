@@ -89,7 +89,8 @@ static cw_status count_layer(cli_label_scene *s, const cli_volume *volume, size_
 
 /* Sets an opacity of the labels that an item names: "Liver:0.3". Those of "all" are set in a
  * round before the others. */
-static cw_status set_opacity(cli_label_scene *s, char *item, bool for_all, cw_error *err)
+static cw_status set_opacity(cli_label_scene *s, const cw_label_ids *ids, char *item,
+                             bool for_all, cw_error *err)
 {
     cli_label_choice choice = {0};
     char *colon = strrchr(item, ':'), *end = NULL;
@@ -100,7 +101,8 @@ static cw_status set_opacity(cli_label_scene *s, char *item, bool for_all, cw_er
                         "17:0.3,Liver:0.5,all:0.8",
                         item);
     *colon = '\0';
-    cw_status st = cli_choose_labels("--label-opacity", item, &s->names.table, &choice, err);
+    cw_status st =
+        cli_choose_labels("--label-opacity", item, &s->names.table, ids, &choice, err);
     for (size_t n = 0; n < s->shown.count && st == CW_OK && choice.all == for_all; n++)
         if (is_chosen(&choice, s->shown.labels[n].layer, s->shown.labels[n].value))
             s->shown.labels[n].color[3] = (uint8_t)lround(255 * opacity);
@@ -108,7 +110,8 @@ static cw_status set_opacity(cli_label_scene *s, char *item, bool for_all, cw_er
     return st;
 }
 
-static cw_status set_opacities(const char *text, cli_label_scene *s, cw_error *err)
+static cw_status set_opacities(const char *text, const cw_label_ids *ids, cli_label_scene *s,
+                               cw_error *err)
 {
     cw_status st = CW_OK;
     for (int round = 0; round < 2; round++)
@@ -117,7 +120,7 @@ static cw_status set_opacities(const char *text, cli_label_scene *s, cw_error *e
             at += *at == ',';
             const size_t length = strcspn(at, ",");
             snprintf(item, sizeof item, "%.*s", (int)length, at);
-            st = set_opacity(s, item, round == 0, err);
+            st = set_opacity(s, ids, item, round == 0, err);
         }
     return st;
 }
@@ -161,13 +164,14 @@ cw_status cli_find_shown_labels(const cli_label_look *look, const cli_input *inp
     if (st == CW_OK)
         st = find_names(look, volume, s, err);
     if (st == CW_OK)
-        st = cli_choose_labels("--labels", look->labels, &s->names.table, &s->choice, err);
+        st = cli_choose_labels("--labels", look->labels, &s->names.table, &volume->ids,
+                               &s->choice, err);
     cli_label_layers(volume, input, &first, &end);
     for (size_t c = first; c < end && st == CW_OK; c++)
         st = count_layer(s, volume, c, step, err);
     if (st == CW_OK)
         st = check_shown(volume, s, err);
-    return st == CW_OK ? set_opacities(look->opacity, s, err) : st;
+    return st == CW_OK ? set_opacities(look->opacity, &volume->ids, s, err) : st;
 }
 
 /* Appends a mesh of labels to another. Both are of one volume. */

@@ -64,6 +64,7 @@ cw_status cli_read_step(cli_source *source, const cli_input *input, size_t step,
     at.step = moment->step;
     at.step_chosen = source->series.given;
     at.array.component.given |= source->of_labels;
+    at.of_labels |= source->of_labels;
     cw_volume_free(&source->dense);
     if (source->volume.voxels.data && source->volume.path == moment->path)
         return cli_choose_step(&at, moment->step, &source->volume, err);

@@ -215,7 +215,14 @@ void cli_describe_labels(const cli_volume *volume, const cw_labels *labels,
     int n = snprintf(text, CLI_LABELS_TEXT, "%s label map (%s%zu label%s",
                      v->known & CW_KNOWN_LABELS ? "is a" : "looks like a",
                      labels->more ? "more than " : "", count, count == 1 ? "" : "s");
-    if (count && !labels->more)
+    const cw_label_ids *ids = &volume->ids;
+    if (ids->count > 1) {
+        const cw_label first = cw_label_ids_label(ids, 1),
+                       last = cw_label_ids_label(ids, (uint32_t)ids->count - 1);
+        char low[CW_LABEL_NUMBER], high[CW_LABEL_NUMBER];
+        n += snprintf(text + n, CLI_LABELS_TEXT - (size_t)n, ", %s to %s",
+                      cw_label_number(&first, low), cw_label_number(&last, high));
+    } else if (count && !labels->more)
         n += snprintf(text + n, CLI_LABELS_TEXT - (size_t)n, ", %.10g to %.10g",
                       labels->value[zeros], labels->value[labels->count - 1]);
     snprintf(text + n, CLI_LABELS_TEXT - (size_t)n, "%s)",
@@ -243,6 +250,7 @@ bool cli_is_hounsfield(const cw_volume *volume, const cw_statistics *values)
 void cli_free_volume(cli_volume *volume)
 {
     cw_label_table_free(&volume->labels);
+    cw_label_ids_free(&volume->ids);
     cw_volume_free(&volume->whole);
     cw_volume_free(&volume->voxels);
     cw_volume_free(&volume->magnitude);

@@ -305,6 +305,8 @@ static bool needs_slices(const cli_input *input, const cw_volume *part, size_t l
     for (int a = 0; a < 3; a++)
         voxels *= (double)part->dim[a];
     size_t voxel = cw_type_size(part->type);
+    if (input->of_labels && part->type == CW_U32) /* perhaps of 64 bits in the file */
+        voxel *= 2;
     if (input->denoise.given)
         voxel += cw_type_size(cli_denoised_type(input, part));
     const double bytes = voxels * (double)voxel;
@@ -322,6 +324,17 @@ static cw_status view_shape(const cw_volume *part, cli_volume *volume, cw_error 
     *view = *part;
     view->components = view->steps = 1;
     return cwi_volume_thin(view, volume->coarsen, err);
+}
+
+/* Finds the numbers of labels that come slice by slice. */
+static cw_status find_ids(const char *path, const cw_read_desc *voxels, const cli_input *input,
+                          cli_volume *volume, cw_error *err)
+{
+    cw_read_desc desc = *voxels;
+    memcpy(desc.every, volume->coarsen, sizeof desc.every);
+    desc.note = NULL;
+    desc.max_bytes = 0;
+    return cw_label_ids_read(path, &desc, input->step, &volume->ids, err);
 }
 
 static cw_status read_voxels(const char *path, cw_read_desc *desc, const cli_input *input,
@@ -343,6 +356,8 @@ static cw_status read_voxels(const char *path, cw_read_desc *desc, const cli_inp
         choose_sample(&part, cli_memory_limit(input), volume->coarsen);
     if (needs_slices(input, &part, desc->max_bytes)) {
         st = view_shape(&part, volume, err);
+        if (st == CW_OK && input->of_labels)
+            st = find_ids(path, desc, input, volume, err);
         if (st == CW_OK)
             cli_print_slice_filter(input, volume);
         volume->view.type = cli_denoised_type(input, &volume->view);
@@ -434,6 +449,8 @@ cw_status cli_read_volume(const char *path, const cli_input *input, bool header_
     desc.note = cli_take_note;
     desc.note_user = volume;
     desc.labels = &volume->labels;
+    desc.ids = input->of_labels ? &volume->ids : NULL;
+    desc.round_labels = input->round_labels;
     cw_status st = cli_check_inside_options(input, err);
     if (st == CW_OK)
         st = set_raw(input, &raw, &desc, err);
@@ -464,6 +481,9 @@ static cw_status visit_volume(const void *user, const cw_slice_visitor *visitor,
         desc.region = &box;
         st = find_box(input, &volume->whole, true, &box, err);
     }
+    cw_label_ids ids = volume->ids; /* borrowed */
+    desc.ids = input->of_labels ? &ids : NULL;
+    desc.round_labels = input->round_labels;
     memcpy(desc.every, volume->coarsen, sizeof desc.every);
     return st == CW_OK ? cw_volume_visit(volume->path, &desc, input->array.component.number,
                                          input->step, visitor, NULL, err)

@@ -75,6 +75,8 @@ typedef struct cli_input {
     bool is_quiet;     /* prints no lines about the file */
     int stream;        /* CLI_STREAM_... */
     bool may_stream;   /* the command can do with slices */
+    bool of_labels;    /* values are numbers of labels: see cli_volume's ids */
+    bool round_labels; /* those that are not whole are rounded */
     bool sample;       /* of many voxels some rows and slices are read: cli_volume's coarsen */
 } cli_input;
 
@@ -297,6 +299,7 @@ typedef struct cli_volume {
     bool streams;          /* voxels are not read: they do not fit, and come slice by slice */
     bool is_quiet;         /* prints no lines about the file */
     cw_label_table labels; /* names and colours of labels that the file holds */
+    cw_label_ids ids;      /* numbers of labels that were replaced by their places */
     char notes[CLI_MAX_NOTES][256]; /* what the reader found and decided on */
     size_t note_count;
 } cli_volume;

@@ -172,7 +172,8 @@ static void to_file_name(const char *name, size_t number, char text[256])
 cw_status cli_name_part_outputs(cli_outputs *outputs, const char *text, const char *input,
                                 const cw_part *parts, size_t count, cw_error *err)
 {
-    char *stem = NULL, name[256], number[24], label[24] = "", layer[24] = "", why[64];
+    char *stem = NULL, name[256], number[24], label[CW_LABEL_NUMBER] = "", layer[24] = "",
+         why[64];
     char *parent = cli_parent(input);
     cw_status st = reserve_names(outputs, count, &stem, input, err);
     cli_part fields[] = {
@@ -186,7 +187,7 @@ cw_status cli_name_part_outputs(cli_outputs *outputs, const char *text, const ch
         to_file_name(parts[n].name, n + 1, name);
         snprintf(number, sizeof number, "%zu", n + 1);
         if (parts[n].label) {
-            snprintf(label, sizeof label, "%u", parts[n].label->value);
+            cw_label_number(parts[n].label, label);
             snprintf(layer, sizeof layer, "%u", parts[n].label->layer);
         }
         st = add_output(outputs, text, fields, field_count, err);

@@ -10,18 +10,25 @@
 #include <string.h>
 #include <strings.h>
 
-static uint64_t key_of(uint32_t layer, uint32_t value)
+/* Compares two labels by layer, by value, and by what goes beyond values. */
+static int compare_labels(const cw_label *a, const cw_label *b)
 {
-    return (uint64_t)layer << 32 | value;
+    if (a->layer != b->layer)
+        return a->layer < b->layer ? -1 : 1;
+    if (a->value != b->value)
+        return a->value < b->value ? -1 : 1;
+    if (a->is_negative != b->is_negative)
+        return a->is_negative ? -1 : 1;
+    return (a->id > b->id) - (a->id < b->id);
 }
 
-/* Returns the place of the first label that is not below a key. */
-static size_t find_place(const cw_label_table *table, uint64_t key)
+/* Returns the place of the first label that is not below another. */
+static size_t find_place(const cw_label_table *table, const cw_label *label)
 {
     size_t low = 0, high = table->count;
     while (low < high) {
         const size_t middle = low + (high - low) / 2;
-        if (key_of(table->labels[middle].layer, table->labels[middle].value) < key)
+        if (compare_labels(&table->labels[middle], label) < 0)
             low = middle + 1;
         else
             high = middle;
@@ -31,9 +38,10 @@ static size_t find_place(const cw_label_table *table, uint64_t key)
 
 const cw_label *cw_label_find(const cw_label_table *table, uint32_t layer, uint32_t value)
 {
+    const cw_label first = {.value = value, .layer = layer, .is_negative = true};
     if (!table)
         return NULL;
-    const size_t at = find_place(table, key_of(layer, value));
+    const size_t at = find_place(table, &first);
     if (at == table->count)
         return NULL;
     const cw_label *label = &table->labels[at];
@@ -132,8 +140,8 @@ cw_status cw_label_table_add(cw_label_table *table, const cw_label *label, cw_er
 {
     CWI_REQUIRE(err, table, label);
     cw_label copy;
-    const size_t at = find_place(table, key_of(label->layer, label->value));
-    const bool replaces = cw_label_find(table, label->layer, label->value) != NULL;
+    const size_t at = find_place(table, label);
+    const bool replaces = at < table->count && compare_labels(&table->labels[at], label) == 0;
     cw_status st = copy_label(table, label, replaces, &copy, err);
     if (st != CW_OK)
         return st;
@@ -157,33 +165,31 @@ cw_status cwi_label_table_append(cw_label_table *table, const cw_label *label, c
     return st;
 }
 
-/* The key of a label, and its index before sorting. */
+/* A label, and its index before sorting. */
 typedef struct label_key {
-    uint64_t key;
+    const cw_label *label;
     size_t index;
 } label_key;
 
 static int compare_keys(const void *a, const void *b)
 {
     const label_key *p = a, *q = b;
-    return p->key != q->key ? (p->key > q->key) - (p->key < q->key)
-                            : (p->index > q->index) - (p->index < q->index);
+    const int order = compare_labels(p->label, q->label);
+    return order ? order : (p->index > q->index) - (p->index < q->index);
 }
 
 static bool is_rising(const cw_label_table *table)
 {
-    for (size_t n = 1; n < table->count; n++) {
-        const cw_label *a = &table->labels[n - 1], *b = &table->labels[n];
-        if (key_of(a->layer, a->value) >= key_of(b->layer, b->value))
+    for (size_t n = 1; n < table->count; n++)
+        if (compare_labels(&table->labels[n - 1], &table->labels[n]) >= 0)
             return false;
-    }
     return true;
 }
 
 static const cw_label *find_repeat(const cw_label_table *table, const label_key *keys)
 {
     for (size_t n = 1; n < table->count; n++)
-        if (keys[n].key == keys[n - 1].key)
+        if (compare_labels(keys[n].label, keys[n - 1].label) == 0)
             return &table->labels[keys[n].index];
     return NULL;
 }
@@ -194,7 +200,7 @@ static void move_labels(cw_label_table *table, const label_key *keys, cw_label *
 {
     size_t count = 0;
     for (size_t n = 0; n < table->count; n++) {
-        if (n > 0 && keys[n].key == keys[n - 1].key)
+        if (n > 0 && compare_labels(keys[n].label, keys[n - 1].label) == 0)
             free_label(&to[--count]);
         to[count++] = table->labels[keys[n].index];
     }
@@ -213,12 +219,13 @@ cw_status cwi_label_table_sort(cw_label_table *table, bool refuse_repeats, cw_er
     cw_label *labels = cwi_alloc_array(capacity, sizeof *labels);
     cw_status st = keys && labels ? CW_OK : cwi_fail_memory(err);
     for (size_t n = 0; st == CW_OK && n < table->count; n++)
-        keys[n] = (label_key){key_of(table->labels[n].layer, table->labels[n].value), n};
+        keys[n] = (label_key){&table->labels[n], n};
     if (st == CW_OK)
         qsort(keys, table->count, sizeof *keys, compare_keys);
     const cw_label *repeat = st == CW_OK && refuse_repeats ? find_repeat(table, keys) : NULL;
     if (repeat)
-        st = cwi_fail(err, CW_ERR_FORMAT, "label %u is described twice", repeat->value);
+        st = cwi_fail(err, CW_ERR_FORMAT, "label %s is described twice",
+                      cw_label_number(repeat, (char[CW_LABEL_NUMBER]){0}));
     if (st == CW_OK)
         move_labels(table, keys, labels);
     else

@@ -1,6 +1,7 @@
 /* Makes volumes, fills in their defaults, checks them, takes parts of them, and maps indices to
  * the world. */
 #include "core/volume/volume.h"
+#include "core/volume/label_ids.h"
 
 #include "core/base/memory.h"
 #include "core/base/status.h"
@@ -21,11 +22,15 @@ static const struct {
 
 size_t cw_type_size(cw_type type)
 {
+    if (cwi_id_is_wide(type))
+        return sizeof(int64_t);
     return (unsigned)type < CW_TYPE_COUNT ? types[type].size : 0;
 }
 
 const char *cw_type_name(cw_type type)
 {
+    if (cwi_id_is_wide(type))
+        return (int)type == CWI_I64 ? "i64" : "u64";
     return (unsigned)type < CW_TYPE_COUNT ? types[type].name : "unknown";
 }
 
@@ -81,7 +86,7 @@ cw_status cw_volume_alloc(cw_volume *volume, cw_type type, const size_t dim[3],
                    .steps = steps ? steps : 1,
                    .slope = 1};
     memset(volume, 0, sizeof *volume);
-    if (!cw_type_size(type) || !dim[0] || !dim[1] || !dim[2])
+    if ((unsigned)type >= CW_TYPE_COUNT || !dim[0] || !dim[1] || !dim[2])
         return cwi_fail(
             err, CW_ERR_ARGUMENT,
             "a volume needs a voxel type and sizes of at least 1; got type %d, %zu x "
@@ -190,7 +195,7 @@ cw_status cw_volume_resolve(const cw_volume *in, cw_volume *out, cw_error *err)
     CWI_REQUIRE(err, in, out);
     cw_volume v = *in;
     size_t bytes;
-    if (!cw_type_size(v.type))
+    if ((unsigned)v.type >= CW_TYPE_COUNT)
         return cwi_fail(err, CW_ERR_ARGUMENT, "%d is not a voxel type", (int)v.type);
     if (!v.dim[0] || !v.dim[1] || !v.dim[2])
         return cwi_fail(err, CW_ERR_ARGUMENT, "the volume is empty: %zu x %zu x %zu", v.dim[0],

@@ -141,8 +141,9 @@ cw_status cwi_label_fail_voxel(const cwi_label_layers *l, const size_t bad[3], c
 {
     const double value = cw_volume_value(l->volume, bad[0], bad[1], bad[2] - l->first_slice);
     return cwi_fail(err, CW_ERR_ARGUMENT,
-                    "voxel %zu, %zu, %zu is %.10g: labels are whole numbers, 0 to 4294967295",
-                    bad[0], bad[1], bad[2], value);
+                    "voxel %zu, %zu, %zu is %.10g: labels are whole numbers, 0 to 4294967295%s",
+                    bad[0], bad[1], bad[2], value,
+                    value != floor(value) ? "; desc->round_labels takes the nearest" : "");
 }
 
 bool cwi_label_layer_count(const cwi_label_layers *l, const uint32_t *labels,

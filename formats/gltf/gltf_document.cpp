@@ -166,10 +166,21 @@ tinygltf::Value describe_code(const cw_code &code)
     return tinygltf::Value(words);
 }
 
+// Returns the number of a label; one that no double has becomes text.
+tinygltf::Value label_number(const cw_label &label)
+{
+    char number[CW_LABEL_NUMBER];
+    const uint64_t size = label.id ? label.id : label.value;
+    if (size > uint64_t(1) << 53)
+        return text(cw_label_number(&label, number));
+    if (size > INT32_MAX)
+        return tinygltf::Value(label.is_negative ? -double(size) : double(size));
+    return tinygltf::Value(label.is_negative ? -int(size) : int(size));
+}
+
 void tell_label(const cw_label &label, Object &extras)
 {
-    extras["label"] =
-        label.value <= INT32_MAX ? whole(label.value) : tinygltf::Value(double(label.value));
+    extras["label"] = label_number(label);
     if (label.layer > 0)
         extras["layer"] = whole(label.layer);
     if (label.has_color) {

@@ -188,6 +188,8 @@ static cw_label label_of(const cwi_gltf_reader *r, const cwi_gltf_instance *at)
     const cwi_gltf_mesh *mesh = &r->scene.meshes[at->mesh];
     cw_label label = {.value = n->label,
                       .layer = n->layer,
+                      .id = n->label_id,
+                      .is_negative = n->label_is_negative,
                       .name = n->name,
                       .has_color = n->has_color,
                       .category = {n->codes[0], n->codes[1], n->codes[2]},

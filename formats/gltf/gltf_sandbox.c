@@ -258,6 +258,7 @@ static bool mend_scene(cwi_gltf_scene *s)
         mend_bool(&n->has_origin);
         mend_bool(&n->has_affine);
         mend_bool(&n->has_label);
+        mend_bool(&n->label_is_negative);
         mend_bool(&n->has_color);
         mend_bool(&n->is_hidden);
         if (!is_range(n->first, n->end, s->child_count) ||

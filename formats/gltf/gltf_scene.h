@@ -101,6 +101,8 @@ typedef struct cwi_gltf_node {
     bool has_label;                  /* as our writer stores it in extras: */
     bool has_color;
     uint32_t label, layer;
+    uint64_t label_id; /* as in cw_label */
+    bool label_is_negative;
     uint8_t color[4];
     char *codes
         [CWI_GLTF_CODES]; /* category and type: scheme, value and meaning of each; or NULL */

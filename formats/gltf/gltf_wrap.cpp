@@ -234,11 +234,18 @@ cw_status copy_label(const tinygltf::Value &extras, cwi_gltf_node &node, cw_erro
 {
     const tinygltf::Value &label = member(extras, "label"), &layer = member(extras, "layer"),
                           &color = member(extras, "color");
-    const uint64_t value = number_of(label);
-    if (!node.lps || !label.IsNumber() || value > UINT32_MAX)
+    char number[CW_LABEL_NUMBER] = "";
+    cw_label read = {};
+    if (label.IsNumber())
+        snprintf(number, sizeof number, "%.0f", label.GetNumberAsDouble());
+    else if (label.IsString())
+        snprintf(number, sizeof number, "%.23s", label.Get<std::string>().c_str());
+    if (!node.lps || !cw_label_parse(number, &read))
         return CW_OK;
     node.has_label = true;
-    node.label = uint32_t(value);
+    node.label = read.value;
+    node.label_id = read.id;
+    node.label_is_negative = read.is_negative;
     node.layer =
         layer.IsNumber() && number_of(layer) <= UINT32_MAX ? uint32_t(number_of(layer)) : 0;
     unsigned rgb[3];

@@ -202,8 +202,8 @@ static cw_status read_row(const column_header *h, char *text, size_t line, cw_la
                             h->count);
     const char *value = find_field(h, fields, count, COLUMN_VALUE);
     const char *hex = find_field(h, fields, count, COLUMN_HEX);
-    cw_status st = cwi_label_whole(value ? value : "", UINT32_MAX, line,
-                                   h->rules->names[COLUMN_VALUE], &label->value, err);
+    cw_status st = cwi_label_read_number(value ? value : "", line,
+                                         h->rules->names[COLUMN_VALUE], label, err);
     if (st == CW_OK)
         st = hex ? read_hex(hex, line, label, err)
                  : read_channels(h, fields, count, line, label, err);

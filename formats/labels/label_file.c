@@ -246,6 +246,17 @@ cw_status cwi_label_whole(const char *word, uint32_t max, size_t line, const cha
     return CW_OK;
 }
 
+cw_status cwi_label_read_number(const char *word, size_t line, const char *field,
+                                cw_label *label, cw_error *err)
+{
+    return cw_label_parse(word, label)
+               ? CW_OK
+               : cwi_fail(err, CW_ERR_FORMAT,
+                          "line %zu: '%s' is '%.40s'; a whole number of up to 64 bits was "
+                          "expected",
+                          line, field, word);
+}
+
 cw_status cwi_label_rgb(char *const words[3], size_t line, cw_label *label, cw_error *err)
 {
     static const char *const names[] = {"R", "G", "B"};

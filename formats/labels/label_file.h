@@ -65,6 +65,10 @@ bool cwi_label_is_whole(const char *word);
 CW_NODISCARD cw_status cwi_label_whole(const char *word, uint32_t max, size_t line,
                                        const char *field, uint32_t *value, cw_error *err);
 
+/* Parses the number of a label. Returns CW_ERR_FORMAT, naming the field. */
+CW_NODISCARD cw_status cwi_label_read_number(const char *word, size_t line, const char *field,
+                                             cw_label *label, cw_error *err);
+
 /* Reads three numbers from 0 to 255 into the colour of a label, and makes it opaque. */
 CW_NODISCARD cw_status cwi_label_rgb(char *const words[3], size_t line, cw_label *label,
                                      cw_error *err);

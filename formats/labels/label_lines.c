@@ -85,7 +85,7 @@ static cw_status read_color_line(char *line, size_t number, uint32_t missing, cw
         return cwi_fail(err, CW_ERR_FORMAT,
                         "line %zu has %zu words; 'number name R G B A' was expected", number,
                         count);
-    cw_status st = cwi_label_whole(words[0], UINT32_MAX, number, "number", &label->value, err);
+    cw_status st = cwi_label_read_number(words[0], number, "number", label, err);
     if (st == CW_OK)
         st = cwi_label_rgb(words + 2, number, label, err);
     if (st == CW_OK && count > COLOR_WORDS)
@@ -170,7 +170,7 @@ static cw_status read_itksnap_line(char *line, size_t number, cw_label *label, c
             "line %zu has %zu words in front of the name; 'IDX R G B A VIS MSH' was "
             "expected",
             number, count);
-    cw_status st = cwi_label_whole(words[0], UINT32_MAX, number, "IDX", &label->value, err);
+    cw_status st = cwi_label_read_number(words[0], number, "IDX", label, err);
     if (st == CW_OK)
         st = cwi_label_rgb(words + 1, number, label, err);
     if (st == CW_OK)
@@ -242,7 +242,7 @@ static cw_status read_name_line(char *line, size_t number, cw_label *label, cw_e
 {
     const char separator = line[strcspn(line, "; \t")];
     char *name = separator ? cut_text(line, separator) : NULL;
-    cw_status st = cwi_label_whole(line, UINT32_MAX, number, "number", &label->value, err);
+    cw_status st = cwi_label_read_number(line, number, "number", label, err);
     if (st != CW_OK)
         return st;
     if (separator == ';') {

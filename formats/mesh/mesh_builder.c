@@ -11,6 +11,9 @@
 #include <stdio.h>
 #include <string.h>
 
+/* The first value of labels whose numbers have more than 32 bits. */
+#define FIRST_REPLACED 0x80000000u
+
 /* --- memory within limits ---------------------------------------------------------------- */
 
 /* Returns twice the capacity, or the requested one, or (near the limit) the maximum. */
@@ -114,13 +117,27 @@ cw_status cwi_mesh_begin_part(cwi_mesh_input *in, const char *name, size_t trian
     return CW_OK;
 }
 
+/* Returns a value for a label: its number, or one for a number beyond 32 bits. The levels of such a label
+ * follow each other. */
+static uint32_t find_value(const cw_label_table *table, const cw_label *label)
+{
+    const cw_label *last = table->count ? &table->labels[table->count - 1] : NULL;
+    if (!label->id)
+        return label->value;
+    if (last && last->id == label->id && last->is_negative == label->is_negative)
+        return last->value;
+    return FIRST_REPLACED + (uint32_t)table->count;
+}
+
 cw_status cwi_mesh_label_part(cwi_mesh_input *in, const cw_label *label, cw_error *err)
 {
     cwi_mark *mark = &in->marks.items[in->marks.count - 1];
-    cw_status st = cw_label_table_add(&in->labels, label, err);
+    cw_label added = *label;
+    added.value = find_value(&in->labels, label);
+    cw_status st = cw_label_table_add(&in->labels, &added, err);
     mark->labelled = st == CW_OK;
     mark->layer = label->layer;
-    mark->value = label->value;
+    mark->value = added.value;
     return st;
 }
 

@@ -27,6 +27,7 @@ typedef struct cwi_part {
                                                      it */
     int digits;                                   /* number of digits of a coordinate in text */
     const uint32_t *sides;                        /* as in cw_write_desc */
+    const cw_label_table *side_labels;            /* of sides; else NULL */
     const uint32_t *numbers;                      /* one per vertex, for a writer's own use */
     size_t group;                                 /* for a writer's own use */
     size_t level;                                 /* of detail, as in cw_part */

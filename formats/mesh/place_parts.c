@@ -283,6 +283,7 @@ cw_status cwi_parts_place(const cw_part *parts, size_t count, const cw_write_des
             add_part(placed, &parts[i], from, &desc->axes);
             name_part(&placed->items[placed->count - 1], parts[i].name, name, i + 1, count);
             placed->items[placed->count - 1].sides = desc->sides;
+            placed->items[placed->count - 1].side_labels = desc->sides ? desc->labels : NULL;
             if (desc->animated)
                 set_sight(&placed->items[placed->count - 1], parts, count, i);
         }

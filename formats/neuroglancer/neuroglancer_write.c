@@ -7,11 +7,12 @@
 #include "formats/neuroglancer/neuroglancer_format.h"
 #include "formats/neuroglancer/segment_facts.h"
 
+#include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
-enum { ID_BYTES = 24 };
+enum { ID_BYTES = 32 };
 
 /* A node of a level, with the bytes of its fragment; 0: it only leads to finer nodes. */
 typedef struct node_entry {
@@ -259,7 +260,7 @@ static cw_status write_segment(writer *w, const cwi_segment *segment, cw_error *
     level_nodes *levels = cwi_alloc_zeroed(segment->level_count, sizeof *levels);
     if (!levels)
         return cwi_fail_memory(err);
-    snprintf(name, sizeof name, "%u", segment->id);
+    snprintf(name, sizeof name, "%" PRIu64, segment->id);
     cw_status st = cwi_outfolder_begin(w->out->folder, name, err);
     for (size_t l = 0; l < segment->level_count && st == CW_OK && count == l; l++) {
         st = write_level(w, &segment->levels[l], l ? &levels[l - 1] : NULL, &levels[l], err);
@@ -267,7 +268,7 @@ static cw_status write_segment(writer *w, const cwi_segment *segment, cw_error *
     }
     if (st == CW_OK)
         st = cwi_outfolder_end(w->out->folder, err);
-    snprintf(name, sizeof name, "%u.index", segment->id);
+    snprintf(name, sizeof name, "%" PRIu64 ".index", segment->id);
     if (st == CW_OK)
         st = write_manifest(w, name, levels, count, err);
     for (size_t l = 0; l < segment->level_count; l++)

@@ -7,6 +7,7 @@
 #include "core/geometry/triangle.h"
 #include "core/geometry/vec3.h"
 
+#include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -24,14 +25,19 @@ void cwi_segments_free(cwi_segments *segments)
 
 static int compare_ids(const void *a, const void *b)
 {
-    const uint32_t x = *(const uint32_t *)a, y = *(const uint32_t *)b;
+    const uint64_t x = *(const uint64_t *)a, y = *(const uint64_t *)b;
     return x < y ? -1 : x > y;
+}
+
+static uint64_t number_of(const cw_label *label)
+{
+    return label->id ? label->id : label->value;
 }
 
 static cw_status check_ids(const cwi_segments *s, cw_error *err)
 {
     cw_status st = CW_OK;
-    uint32_t *ids = cwi_alloc_array(s->count, sizeof *ids);
+    uint64_t *ids = cwi_alloc_array(s->count, sizeof *ids);
     if (!ids)
         return cwi_fail_memory(err);
     for (size_t n = 0; n < s->count; n++)
@@ -43,7 +49,8 @@ static cw_status check_ids(const cwi_segments *s, cw_error *err)
     for (size_t n = 1; n < s->count && st == CW_OK; n++)
         if (ids[n] == ids[n - 1])
             st = cwi_fail(err, CW_ERR_ARGUMENT,
-                          "label %u is there twice, such as in two layers; a segment needs a "
+                          "label %" PRIu64
+                          " is there twice, such as in two layers; a segment needs a "
                           "label of its own",
                           ids[n]);
     cwi_free(ids);
@@ -52,6 +59,7 @@ static cw_status check_ids(const cwi_segments *s, cw_error *err)
 
 cw_status cwi_segments_list(const cwi_parts *parts, cwi_segments *segments, cw_error *err)
 {
+    const cw_label *negative = NULL;
     size_t labels = 0;
     *segments = (cwi_segments){.items = cwi_alloc_zeroed(parts->count, sizeof(cwi_segment))};
     if (!segments->items)
@@ -62,7 +70,8 @@ cw_status cwi_segments_list(const cwi_parts *parts, cwi_segments *segments, cw_e
         if (part->level == 0) {
             cwi_segment *s = &segments->items[segments->count++];
             s->levels = part;
-            s->id = part->label ? part->label->value : (uint32_t)segments->count;
+            s->id = part->label ? number_of(part->label) : segments->count;
+            negative = part->label && part->label->is_negative ? part->label : negative;
         }
         cwi_segment *s = &segments->items[segments->count - 1];
         s->level_count = part->level + 1;
@@ -75,6 +84,10 @@ cw_status cwi_segments_list(const cwi_parts *parts, cwi_segments *segments, cw_e
             : cwi_fail(err, CW_ERR_ARGUMENT,
                        "%zu of %zu parts have a label; neuroglancer needs all or none", labels,
                        parts->count);
+    if (st == CW_OK && negative)
+        st = cwi_fail(err, CW_ERR_ARGUMENT,
+                      "label %s is below 0: neuroglancer's segments are numbers from 1 on",
+                      cw_label_number(negative, (char[CW_LABEL_NUMBER]){0}));
     if (st != CW_OK)
         cwi_segments_free(segments);
     return st;
@@ -200,7 +213,7 @@ static void print_column(FILE *out, const char *before, const cwi_segments *s,
         fputs(n ? ", " : "", out);
         switch (which) {
         case COLUMN_ID:
-            fprintf(out, "\"%u\"", s->items[n].id);
+            fprintf(out, "\"%" PRIu64 "\"", s->items[n].id);
             break;
         case COLUMN_NAME:
             print_name(out, part->name);

@@ -6,7 +6,7 @@
 
 /* A segment: parts that are its levels of detail, from the finest on. */
 typedef struct cwi_segment {
-    uint32_t id;
+    uint64_t id;
     const cwi_part *levels;
     size_t level_count;
 } cwi_segment;

@@ -103,7 +103,8 @@ static void print_material(const cwi_part *part, char text[MATERIAL_BYTES])
 {
     const cw_label *label = part->label;
     const int length =
-        label ? snprintf(text, MATERIAL_BYTES, "%s_%u", part->name, label->value)
+        label ? snprintf(text, MATERIAL_BYTES, "%s_%s", part->name,
+                         cw_label_number(label, (char[CW_LABEL_NUMBER]){0}))
               : snprintf(text, MATERIAL_BYTES, "%s_%08X", part->name, pack_color(part->color));
     for (char *c = text; *c; c++)
         *c = *c == ' ' ? '_' : *c;

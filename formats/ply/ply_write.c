@@ -69,6 +69,37 @@ static unsigned char *encode_text_vertex(const cwi_part *part, size_t v, unsigne
     return cwi_put_text(to, "\n");
 }
 
+/* Writes a label's colour and name, and its number where that is not the value in the file. */
+static cw_status write_label(const cw_label *label, cwi_outfile *file, cw_error *err)
+{
+    uint8_t c[4];
+    char number[CW_LABEL_NUMBER];
+    if (label->has_color)
+        memcpy(c, label->color, sizeof c);
+    else
+        cw_label_color(label->value, c);
+    cw_status st =
+        cwi_outfile_printf(file, err, "comment label %u #%02X%02X%02X%02X %s\n", label->value,
+                           c[0], c[1], c[2], c[3], label->name ? label->name : "");
+    return st == CW_OK && label->id
+               ? cwi_outfile_printf(file, err, "comment label_number %u %s\n", label->value,
+                                    cw_label_number(label, number))
+               : st;
+}
+
+/* Writes comments about the labels of the vertices, or of the sides of triangles. */
+static cw_status write_labels(const cwi_parts *parts, cwi_outfile *file, cw_error *err)
+{
+    const cw_label_table *sides = parts->items[0].side_labels;
+    cw_status st = CW_OK;
+    for (size_t n = 0; sides && n < sides->count && st == CW_OK; n++)
+        st = write_label(&sides->labels[n], file, err);
+    for (size_t n = 0; !sides && n < parts->count && st == CW_OK; n++)
+        if (parts->items[n].label)
+            st = write_label(parts->items[n].label, file, err);
+    return st;
+}
+
 static cw_status write_header(const cwi_parts *parts, const cwi_mesh_output *out, cw_error *err)
 {
     const unsigned has = parts->items[0].arrays; /* all have the same */
@@ -76,15 +107,22 @@ static cw_status write_header(const cwi_parts *parts, const cwi_mesh_output *out
     const char *index = parts->vertices > INT32_MAX ? "uint" : "int";
     char origin[CWI_ORIGIN_BYTES];
     cwi_print_origin(out, "comment origin ", "\n", origin);
-    return cwi_outfile_printf(
+    cw_status st = cwi_outfile_printf(
         out->file, err,
         "ply\nformat %s 1.0\n"
-        "comment cubewright %s\ncomment object %s\ncomment unit %s\ncomment frame %s\n%s%s"
-        "element vertex %ju\nproperty float x\nproperty float y\nproperty float z\n%s%s%s%s"
-        "element face %ju\nproperty list uchar %s vertex_indices\n%s%send_header\n",
+        "comment cubewright %s\ncomment object %s\ncomment unit %s\ncomment frame %s\n%s%s",
         out->text ? "ascii" : "binary_little_endian", CW_VERSION, out->name,
         cw_unit_name(out->axes->unit), out->axes->ras ? "RAS" : "LPS",
-        out->axes->y_up ? "comment up Y\n" : "", origin, (uintmax_t)parts->vertices,
+        out->axes->y_up ? "comment up Y\n" : "", origin);
+    if (st == CW_OK)
+        st = write_labels(parts, out->file, err);
+    if (st != CW_OK)
+        return st;
+    return cwi_outfile_printf(
+        out->file, err,
+        "element vertex %ju\nproperty float x\nproperty float y\nproperty float z\n%s%s%s%s"
+        "element face %ju\nproperty list uchar %s vertex_indices\n%s%send_header\n",
+        (uintmax_t)parts->vertices,
         has & CW_KEEPS_NORMALS ? "property float nx\nproperty float ny\nproperty float nz\n"
                                : "",
         has & CW_KEEPS_COLORS ? COLOR_PROPERTIES : "",

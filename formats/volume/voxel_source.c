@@ -6,6 +6,7 @@
 #include "core/base/status.h"
 #include "core/base/text.h"
 #include "core/geometry/affine.h"
+#include "core/volume/label_ids.h"
 #include "core/volume/volume.h"
 #include "formats/volume/slice_visit.h"
 #include "formats/volume/voxel_parts.h"
@@ -32,6 +33,18 @@ void cwi_source_set_stored(cwi_source *src, cwi_stored stored)
 {
     src->stored = stored;
     src->shape.type = cwi_stored_type(stored);
+}
+
+cw_status cwi_source_keep_wide(cwi_source *src, cw_error *err)
+{
+    cwi_axis axes[CWI_ROLE_COUNT];
+    if ((src->stored != CWI_STORED_I64 && src->stored != CWI_STORED_U64) ||
+        src->encoding == CWI_ASCII)
+        return CW_OK;
+    src->shape.type = (cw_type)(src->stored == CWI_STORED_I64 ? CWI_I64 : CWI_U64);
+    src->stored = CWI_STORED_PLAIN;
+    memcpy(axes, src->axes, sizeof axes);
+    return cwi_source_set_axes(src, axes, src->axis_count, err);
 }
 
 void cwi_source_note(cwi_source *src, const char *format, ...)

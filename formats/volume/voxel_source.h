@@ -70,6 +70,10 @@ CW_NODISCARD cw_status cwi_source_set_axes(cwi_source *src, const cwi_axis *axes
 /* Sets the type of voxels whose numbers have a form of their own in the file. */
 void cwi_source_set_stored(cwi_source *src, cwi_stored stored);
 
+/* Keeps integers of 64 bits as they are, for those who replace them; those in text stay refused where they
+ * do not fit 32. Returns CW_ERR_LIMIT when the size overflows. */
+CW_NODISCARD cw_status cwi_source_keep_wide(cwi_source *src, cw_error *err);
+
 /* Adds to the source's note. */
 void cwi_source_note(cwi_source *src, const char *format, ...) CW_PRINTF(2, 3);
 

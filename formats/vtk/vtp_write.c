@@ -37,6 +37,18 @@ static unsigned char *encode_label(const cwi_part *part, size_t v, unsigned char
     return cwi_put_u32(to, cwi_vertex_label(part, v));
 }
 
+static unsigned char *put_number(unsigned char *to, const cw_label *label)
+{
+    const uint64_t size = label->id ? label->id : label->value;
+    return cwi_put_u64(to, label->is_negative ? 0 - size : size);
+}
+
+static unsigned char *encode_wide_label(const cwi_part *part, size_t v, unsigned char *to)
+{
+    (void)v;
+    return put_number(to, part->label);
+}
+
 static unsigned char *encode_corners(const cwi_part *part, size_t t, unsigned char *to)
 {
     for (int c = 0; c < 3; c++)
@@ -48,6 +60,16 @@ static unsigned char *encode_wide_corners(const cwi_part *part, size_t t, unsign
 {
     for (int c = 0; c < 3; c++)
         to = cwi_put_u64(to, cwi_corner_number(part, t, c));
+    return to;
+}
+
+static unsigned char *encode_wide_sides(const cwi_part *part, size_t t, unsigned char *to)
+{
+    for (int s = 0; s < 2; s++) {
+        const uint32_t value = part->sides[2 * t + (size_t)s];
+        const cw_label *label = cw_label_find(part->side_labels, 0, value);
+        to = put_number(to, label ? label : &(cw_label){.value = value});
+    }
     return to;
 }
 
@@ -75,7 +97,15 @@ static unsigned char *encode_wide_end(const cwi_part *part, size_t t, unsigned c
 
 /* --- arrays ------------------------------------------------------------------------------ */
 
-typedef enum width { ANY, NARROW, WIDE } width;
+/* An array is written when the file needs its width of numbers. */
+typedef enum width {
+    ANY,
+    NARROW, /* corners of 32 bits */
+    WIDE,   /* or of 64 */
+    VALUES, /* labels whose numbers are their values */
+    SIGNED, /* labels whose numbers have 64 bits and a sign */
+    UNSIGNED
+} width;
 
 /* Beside the cw_keeps flags: the labels on both sides of triangles. */
 enum { SIDES = CW_KEEPS_ALL + 1 };
@@ -83,7 +113,7 @@ enum { SIDES = CW_KEEPS_ALL + 1 };
 /* An array of the file. */
 typedef struct array {
     unsigned keeps; /* written when the mesh has it; 0: always; SIDES */
-    width width;    /* written when numbers need 64 bits, or when they do not */
+    width width;
     const char *type, *name;
     size_t numbers, bytes; /* of a vertex or triangle */
     bool of_triangles;     /* else of vertices */
@@ -96,19 +126,23 @@ static const array arrays[] = {
     {CW_KEEPS_NORMALS, ANY, "Float32", "Normals", 3, 12, false, encode_normal, "", ""},
     {CW_KEEPS_COLORS, ANY, "UInt8", "RGBA", 4, 4, false, encode_color, "", ""},
     {CW_KEEPS_SCALARS, ANY, "Float32", "scalar", 1, 4, false, encode_scalar, "", ""},
-    {CW_KEEPS_LABELS, ANY, "UInt32", "label", 1, 4, false, encode_label, "", ""},
+    {CW_KEEPS_LABELS, VALUES, "UInt32", "label", 1, 4, false, encode_label, "", ""},
+    {CW_KEEPS_LABELS, SIGNED, "Int64", "label", 1, 8, false, encode_wide_label, "", ""},
+    {CW_KEEPS_LABELS, UNSIGNED, "UInt64", "label", 1, 8, false, encode_wide_label, "", ""},
     {0, ANY, "Float32", "Points", 3, 12, false, encode_place, "</PointData>\n<Points>\n",
      "</Points>\n"},
     {0, NARROW, "Int32", "connectivity", 1, 12, true, encode_corners, "<Polys>\n", ""},
     {0, NARROW, "Int32", "offsets", 1, 4, true, encode_end, "", "</Polys>\n"},
     {0, WIDE, "Int64", "connectivity", 1, 24, true, encode_wide_corners, "<Polys>\n", ""},
     {0, WIDE, "Int64", "offsets", 1, 8, true, encode_wide_end, "", "</Polys>\n"},
-    {SIDES, ANY, "UInt32", "BoundaryLabels", 2, 8, true, encode_sides, "", ""},
+    {SIDES, VALUES, "UInt32", "BoundaryLabels", 2, 8, true, encode_sides, "", ""},
+    {SIDES, SIGNED, "Int64", "BoundaryLabels", 2, 16, true, encode_wide_sides, "", ""},
+    {SIDES, UNSIGNED, "UInt64", "BoundaryLabels", 2, 16, true, encode_wide_sides, "", ""},
     {CW_KEEPS_FACE_COLORS, ANY, "UInt8", "RGBA", 4, 4, true, encode_face_color, "", ""},
 };
 enum {
     ARRAY_COUNT = sizeof arrays / sizeof *arrays,
-    FIRST_OF_CELLS = ARRAY_COUNT - 2,
+    FIRST_OF_CELLS = ARRAY_COUNT - 4,
     OFFSET_DIGITS = 20
 };
 
@@ -120,13 +154,35 @@ typedef struct vtp {
     uint64_t offset_at[ARRAY_COUNT]; /* places in the file of the arrays' offsets */
 } vtp;
 
+static width widen(width labels, const cw_label *label)
+{
+    return !label || !label->id              ? labels
+           : label->id > (uint64_t)INT64_MAX ? UNSIGNED
+           : labels == UNSIGNED              ? UNSIGNED
+                                             : SIGNED;
+}
+
+/* Returns the width of the labels of all parts, or of the sides of triangles. */
+static width width_of_labels(const cwi_parts *parts)
+{
+    const cw_label_table *sides = parts->items[0].side_labels;
+    width labels = VALUES;
+    for (size_t n = 0; n < parts->count; n++)
+        labels = parts->items[n].mesh.labels ? labels : widen(labels, parts->items[n].label);
+    for (size_t n = 0; sides && n < sides->count; n++)
+        labels = widen(labels, &sides->labels[n]);
+    return labels;
+}
+
 static void choose_arrays(vtp *f, bool wide)
 {
+    const width labels = width_of_labels(f->parts);
     const cwi_part *first = &f->parts->items[0]; /* all parts have the same arrays */
     const unsigned has = first->arrays | (first->sides ? SIDES : 0u);
     for (int i = 0; i < ARRAY_COUNT; i++)
         f->has[i] = (!arrays[i].keeps || arrays[i].keeps & has) &&
-                    (arrays[i].width == ANY || (arrays[i].width == WIDE) == wide);
+                    (arrays[i].width == ANY || arrays[i].width == labels ||
+                     arrays[i].width == (wide ? WIDE : NARROW));
 }
 
 static cw_status declare_array(vtp *f, int i, cw_error *err)
@@ -155,7 +211,79 @@ static const char *shown_array(const vtp *f)
 
 static bool has_cell_data(const vtp *f)
 {
-    return f->has[FIRST_OF_CELLS] || f->has[FIRST_OF_CELLS + 1];
+    bool has = false;
+    for (int i = FIRST_OF_CELLS; i < ARRAY_COUNT; i++)
+        has = has || f->has[i];
+    return has;
+}
+
+/* --- names and colours of labels --------------------------------------------------------- */
+
+static const cw_label *label_at(const cwi_parts *parts, size_t n)
+{
+    const cw_label_table *sides = parts->items[0].side_labels;
+    return sides ? &sides->labels[n] : parts->items[n].label;
+}
+
+static size_t count_labels(const cwi_parts *parts)
+{
+    const cw_label_table *sides = parts->items[0].side_labels;
+    size_t count = 0;
+    for (size_t n = 0; !sides && n < parts->count; n++)
+        count += parts->items[n].label != NULL;
+    return sides ? sides->count : count == parts->count ? count : 0;
+}
+
+/* Writes a text as the codes of its bytes, and its end. */
+static cw_status write_codes(cwi_outfile *file, const char *text, cw_error *err)
+{
+    cw_status st = CW_OK;
+    for (const char *c = text ? text : ""; st == CW_OK; c++) {
+        st = cwi_outfile_printf(file, err, *c ? "%d " : "%d\n", (unsigned char)*c);
+        if (!*c)
+            break;
+    }
+    return st;
+}
+
+static cw_status write_color(cwi_outfile *file, const cw_label *label, cw_error *err)
+{
+    uint8_t c[4];
+    if (label->has_color)
+        memcpy(c, label->color, sizeof c);
+    else
+        cw_label_color(label->value, c);
+    return cwi_outfile_printf(file, err, "%d %d %d %d\n", c[0], c[1], c[2], c[3]);
+}
+
+/* Writes what is known of the labels, as arrays of the field: numbers, names and colours. */
+static cw_status write_labels(const vtp *f, cw_error *err)
+{
+    enum { NUMBER, NAME, COLOR, KINDS };
+    static const char *const names[KINDS] = {"number", "name",
+                                             "color\" NumberOfComponents=\"4"};
+    const size_t count = count_labels(f->parts);
+    const char *types[KINDS] = {width_of_labels(f->parts) == UNSIGNED ? "UInt64" : "Int64",
+                                "String", "UInt8"};
+    cwi_outfile *file = f->out->file;
+    cw_status st = count ? cwi_outfile_printf(file, err, "<FieldData>\n") : CW_OK;
+    for (int kind = 0; kind < KINDS && count && st == CW_OK; kind++) {
+        st = cwi_outfile_printf(file, err,
+                                "<DataArray type=\"%s\" Name=\"label_%s\" "
+                                "NumberOfTuples=\"%zu\" format=\"ascii\">\n",
+                                types[kind], names[kind], count);
+        for (size_t n = 0; n < count && st == CW_OK; n++) {
+            const cw_label *label = label_at(f->parts, n);
+            char number[CW_LABEL_NUMBER];
+            st = kind == NAME ? write_codes(file, label->name, err)
+                 : kind == COLOR
+                     ? write_color(file, label, err)
+                     : cwi_outfile_printf(file, err, "%s\n", cw_label_number(label, number));
+        }
+        if (st == CW_OK)
+            st = cwi_outfile_printf(file, err, "</DataArray>\n");
+    }
+    return st == CW_OK && count ? cwi_outfile_printf(file, err, "</FieldData>\n") : st;
 }
 
 static cw_status write_head(vtp *f, cw_error *err)
@@ -168,11 +296,17 @@ static cw_status write_head(vtp *f, cw_error *err)
         out->file, err,
         "<?xml version=\"1.0\"?>\n<!-- cubewright %s, %s -->\n%s"
         "<VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\" "
-        "header_type=\"UInt64\" compressor=\"vtkZLibDataCompressor\">\n<PolyData>\n"
-        "<Piece NumberOfPoints=\"%ju\" NumberOfVerts=\"0\" NumberOfLines=\"0\" "
-        "NumberOfStrips=\"0\" NumberOfPolys=\"%ju\">\n<PointData%s%s>\n",
-        CW_VERSION, axes, origin, (uintmax_t)f->parts->vertices, (uintmax_t)f->parts->triangles,
-        f->has[0] ? " Normals=\"Normals\"" : "", shown_array(f));
+        "header_type=\"UInt64\" compressor=\"vtkZLibDataCompressor\">\n<PolyData>\n",
+        CW_VERSION, axes, origin);
+    if (st == CW_OK)
+        st = write_labels(f, err);
+    if (st == CW_OK)
+        st = cwi_outfile_printf(
+            out->file, err,
+            "<Piece NumberOfPoints=\"%ju\" NumberOfVerts=\"0\" NumberOfLines=\"0\" "
+            "NumberOfStrips=\"0\" NumberOfPolys=\"%ju\">\n<PointData%s%s>\n",
+            (uintmax_t)f->parts->vertices, (uintmax_t)f->parts->triangles,
+            f->has[0] ? " Normals=\"Normals\"" : "", shown_array(f));
     for (int i = 0; i < ARRAY_COUNT && st == CW_OK; i++) {
         if (i == FIRST_OF_CELLS && has_cell_data(f))
             st = cwi_outfile_printf(out->file, err, "<CellData>\n");

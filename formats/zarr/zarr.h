@@ -48,6 +48,9 @@ typedef struct cwi_zarr_box {
 cwi_zarr_box cwi_zarr_make_box(const cwi_zarr *zarr, const cw_box *box, size_t component,
                                size_t step);
 
+/* Keeps integers of 64 bits as they are (CWI_I64, CWI_U64), for those who replace them. */
+void cwi_zarr_keep_wide(cwi_zarr *zarr);
+
 /* Reads a box into packed voxels: x fastest, then y, z, components, steps.
  *
  * Each chunk that meets the box is decoded once, several at a time. Chunks that the box takes only

@@ -4,6 +4,7 @@
 #include "core/base/memory.h"
 #include "core/base/status.h"
 #include "core/base/thread_pool.h"
+#include "core/volume/label_ids.h"
 #include "formats/bytes/file_pattern.h"
 #include "formats/text/label_ome.h"
 #include "formats/volume/named_arrays.h"
@@ -449,4 +450,13 @@ void cwi_zarr_close(cwi_zarr *z)
     pthread_mutex_destroy(&z->lock);
     cwi_free(z->path);
     cwi_free(z);
+}
+
+void cwi_zarr_keep_wide(cwi_zarr *zarr)
+{
+    cwi_zarr_array *a = &zarr->array;
+    if (a->stored != CWI_STORED_I64 && a->stored != CWI_STORED_U64)
+        return;
+    a->type = zarr->shape.type = (cw_type)(a->stored == CWI_STORED_I64 ? CWI_I64 : CWI_U64);
+    a->stored = CWI_STORED_PLAIN;
 }

@@ -146,6 +146,8 @@ cw_status cwi_zarr_read(const cwi_input *in, const cw_read_desc *desc, cw_volume
     cw_status st = cwi_zarr_open_found(in->path, &opening, &found, &zarr, err);
     if (st == CW_OK && *found.note)
         cwi_note(desc, "%s", found.note);
+    if (st == CW_OK && desc->ids)
+        cwi_zarr_keep_wide(zarr);
     if (st == CW_OK)
         st = in->visit ? visit_slices(zarr, in->visit, desc, err)
                        : load_volume(zarr, desc, volume, err);

@@ -145,6 +145,14 @@ typedef struct cw_read_desc {
     double
         nodata_value; /* for CW_NODATA_VALUE: a value as the volume has it, slope and intercept
                             applied; CW_ERR_ARGUMENT if voxels of its type cannot have it */
+
+    cw_label_ids
+        *ids; /* for a label map: zeroed, or from cw_label_ids_read(). Freed first, then
+                          filled; voxels of labels below 0, or beyond 32 bits, become CW_U32 places
+                          in it. cw_volume_visit() takes it as it is. Default: integers of 64 bits that
+                          do not fit 32 are CW_ERR_FORMAT */
+    bool round_labels; /* with ids: values that are not whole are rounded to the nearest, and
+                          counted in it. Default: they stay */
 } cw_read_desc;
 
 /* Reads a volume: the whole file or a region of it, every component and time step.
@@ -185,6 +193,18 @@ typedef struct cw_read_desc {
 CW_NODISCARD CW_API cw_status cw_volume_read(const char *path, const cw_read_desc *desc,
                                              cw_volume *volume, const char **format,
                                              cw_error *err);
+
+/* Finds the numbers of a label map's labels slice by slice, for a cw_volume_visit(): all components
+ * of a step.
+ *
+ * desc     as for cw_volume_visit(); its ids are not used, round_labels is
+ * step     that the slices have
+ * ids      freed first, then filled; empty where voxels are the numbers of their labels
+ * Returns  as cw_volume_visit(); CW_ERR_ARGUMENT: a value is no whole number, naming the voxel;
+ *          CW_ERR_LIMIT: 2^32 - 1 labels
+ * Cost     reading the voxels once, unless they have 32 bits without a sign */
+CW_NODISCARD CW_API cw_status cw_label_ids_read(const char *path, const cw_read_desc *desc,
+                                                size_t step, cw_label_ids *ids, cw_error *err);
 
 /* A user of slices. A status other than CW_OK ends the visit, which then returns it. */
 typedef struct cw_slice_visitor {
@@ -608,7 +628,8 @@ typedef struct cw_write_desc {
     size_t provenance_count;         /* number of lines */
     cw_progress progress;            /* default: none */
     const cw_label_table
-        *labels; /* volume: names and colours of its labels, for a format whose keeps have
+        *labels; /* with sides, the numbers, names and colours of those. volume: names and
+                    colours of its labels, for a format whose keeps have
                                      CW_KEEPS_LABELS: NRRD (as segments of 3D Slicer) and NIfTI (as the
                                      LabelTable of Connectome Workbench); others leave them out; default: none */
 } cw_write_desc;

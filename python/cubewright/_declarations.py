@@ -39,6 +39,7 @@ CW_ASPECT_BINS = 9
 CW_LENGTH_BINS = 20
 CW_BUDGET_LEVELS = 4
 CW_MAX_VERDICTS = 32
+CW_LABEL_NUMBER = 24
 CW_TEAM_MAX = 4096
 CW_TRANSFER_POINTS = 64
 CW_MAX_MATERIALS = 8
@@ -1991,6 +1992,8 @@ class cw_label(Structure):
     hidden: bool
     category: Any
     type: Any
+    id: int
+    is_negative: bool
 
 
 cw_label._fields_ = [
@@ -2002,6 +2005,8 @@ cw_label._fields_ = [
     ("hidden", c_bool),
     ("category", cw_code),
     ("type", cw_code),
+    ("id", c_uint64),
+    ("is_negative", c_bool),
 ]
 
 
@@ -2013,6 +2018,23 @@ class cw_label_table(Structure):
 cw_label_table._fields_ = [
     ("count", c_size_t),
     ("labels", POINTER(cw_label)),
+]
+
+
+class cw_label_ids(Structure):
+    count: int
+    ids: Any
+    is_unsigned: bool
+    rounded: int
+    largest_rounding: float
+
+
+cw_label_ids._fields_ = [
+    ("count", c_size_t),
+    ("ids", POINTER(c_int64)),
+    ("is_unsigned", c_bool),
+    ("rounded", c_size_t),
+    ("largest_rounding", c_double),
 ]
 
 
@@ -2149,6 +2171,8 @@ class cw_read_desc(Structure):
     progress: Any
     nodata: int
     nodata_value: float
+    ids: Any
+    round_labels: bool
 
 
 cw_read_desc._fields_ = [
@@ -2178,6 +2202,8 @@ cw_read_desc._fields_ = [
     ("progress", cw_progress),
     ("nodata", c_int),
     ("nodata_value", c_double),
+    ("ids", POINTER(cw_label_ids)),
+    ("round_labels", c_bool),
 ]
 
 
@@ -4327,6 +4353,13 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "cw_label_find_name": (POINTER(cw_label), [POINTER(cw_label_table), c_char_p]),
     "cw_label_table_add": (c_int, [POINTER(cw_label_table), POINTER(cw_label), POINTER(cw_error)]),
     "cw_label_color": (None, [c_uint32, POINTER(c_uint8)]),
+    "cw_label_number": (c_char_p, [POINTER(cw_label), POINTER(c_char)]),
+    "cw_label_parse": (c_bool, [c_char_p, POINTER(cw_label)]),
+    "cw_label_ids_free": (None, [POINTER(cw_label_ids)]),
+    "cw_label_ids_find": (c_uint32, [POINTER(cw_label_ids), POINTER(cw_label)]),
+    "cw_label_ids_label": (cw_label, [POINTER(cw_label_ids), c_uint32]),
+    "cw_labels_renumber": (c_int, [POINTER(c_int64), c_bool, c_size_t, POINTER(c_uint32), POINTER(cw_label_ids), POINTER(cw_error)]),
+    "cw_label_table_renumber": (c_int, [POINTER(cw_label_table), POINTER(cw_label_ids), POINTER(cw_error)]),
     "cw_team_is_started": (c_bool, []),
     "cw_team_join": (c_int, [POINTER(cw_team), POINTER(cw_error)]),
     "cw_team_leave": (None, [POINTER(cw_team)]),
@@ -4347,6 +4380,7 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "cw_unit_name": (c_char_p, [c_int]),
     "cw_unit_mm": (c_double, [c_int]),
     "cw_volume_read": (c_int, [c_char_p, POINTER(cw_read_desc), POINTER(cw_volume), POINTER(c_char_p), POINTER(cw_error)]),
+    "cw_label_ids_read": (c_int, [c_char_p, POINTER(cw_read_desc), c_size_t, POINTER(cw_label_ids), POINTER(cw_error)]),
     "cw_volume_visit": (c_int, [c_char_p, POINTER(cw_read_desc), c_size_t, c_size_t, POINTER(cw_slice_visitor), POINTER(c_char_p), POINTER(cw_error)]),
     "cw_steps_list": (c_int, [POINTER(c_char_p), c_size_t, POINTER(cw_read_desc), POINTER(POINTER(POINTER(c_char))), POINTER(c_size_t), POINTER(cw_error)]),
     "cw_steps_free": (None, [POINTER(POINTER(c_char)), c_size_t]),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import operator
 import threading
 import weakref
 from collections.abc import Iterable, Sequence
@@ -36,7 +37,7 @@ from ._options import (
 from ._progress import Progress, Reporter
 from ._render import copy_image
 from ._simplify import describe_smoothing, take_counts
-from ._volume import Volume, take_volume
+from ._volume import Volume, number_labels, take_volume
 
 INSIDE = ("above", "below")
 
@@ -353,23 +354,32 @@ class LabelSurfaces:
     """The surfaces of all labels of a label map, which share their vertices.
 
     voxels   number of voxels of each label
-    patches  interfaces, in rising order of their labels
+    patches  interfaces, in rising order of their labels; the background's is 0
     shared   one mesh with each interface once; its arrays share memory with the library
     """
 
-    def __init__(self, owner: Owner[c.cw_label_surfaces]) -> None:
+    def __init__(self, owner: Owner[c.cw_label_surfaces], ids: list[int]) -> None:
         self._owner = owner
         self._struct = struct = owner.struct
+        self._ids = ids
+        self._values = {number: value for value, number in enumerate(ids)}
         rows = struct.labels[: struct.label_count] if struct.label_count else []
-        self.voxels: dict[int, int] = {row.label: row.voxels for row in rows}
+        self.voxels: dict[int, int] = {self._number(row.label): row.voxels for row in rows}
         pieces = struct.patches[: struct.patch_count] if struct.patch_count else []
-        self.patches = [Patch((p.labels[0], p.labels[1]), p.first, p.count) for p in pieces]
+        self.patches = [
+            Patch((self._number(p.labels[0]), self._number(p.labels[1])), p.first, p.count) for p in pieces
+        ]
         self.shared = Mesh._from_c(struct.mesh, self._owner)
+
+    def _number(self, value: int) -> int:
+        """Returns the number of the label that voxels of a value have."""
+        return self._ids[value] if self._ids else value
 
     def mesh(self, label: int) -> Mesh:
         """Returns the closed mesh of one label. A label without voxels has no triangles."""
         out = c.cw_mesh()
-        call(lib.cw_label_mesh, byref(self._struct), take_count("label", label, 0, 2**32 - 1), byref(out))
+        value = find_value("label", label, self._ids, self._values)
+        call(lib.cw_label_mesh, byref(self._struct), value, byref(out))
         return Mesh._from_c(out)
 
     def meshes(self) -> dict[int, Mesh]:
@@ -399,10 +409,20 @@ class LabelSurfaces:
         )
         out = Owner(c.cw_label_surfaces(), lib.cw_label_surfaces_free)
         reporter.call(lib.cw_label_simplify, byref(self._struct), byref(desc), byref(out.struct))
-        return LabelSurfaces(out)
+        return LabelSurfaces(out, self._ids)
 
     def __repr__(self) -> str:
         return f"<cubewright.LabelSurfaces {len(self.voxels)} labels, {len(self.patches)} interfaces>"
+
+
+def find_value(name: str, label: Any, ids: list[int], values: dict[int, int]) -> int:
+    """Returns the value that voxels of a label have; one that none has for a label without voxels."""
+    if not ids:
+        return take_count(name, label, 0, 2**32 - 1)
+    number = operator.index(label)
+    if not -(2**63) <= number < 2**64:
+        raise ValueError(f"{name} is {number}; a whole number of up to 64 bits was expected")
+    return values.get(number, 2**32 - 1)
 
 
 def extract_labels(
@@ -420,25 +440,27 @@ def extract_labels(
 ) -> LabelSurfaces:
     """Extracts a closed, smoothed surface of each label of a label map, in one pass.
 
-    volume         whole numbers from 0 to 2**32 - 1, of any type; a Volume or an array (z, y, x)
+    volume         whole numbers; a Volume, of 0 to 2**32 - 1 in any type or with ids, or an array
+                   (z, y, x) of up to 64 bits with or without a sign
     labels         those wanted; default: all but the background
     smooth_labels  limit of a vertex' move by smoothing along each axis, in voxels: up to 0.5,
                    the default; 0: no smoothing. Every label keeps the volume of its voxels
 
     Raises Error: ARGUMENT (a value is no label), UNSUPPORTED, LIMIT, NO_MEMORY, CANCELLED.
     """
-    source = take_volume(volume)
+    source = number_labels(volume)
     view = source._select(component, step)
+    values = {number: value for value, number in enumerate(source.ids)}
     reporter = Reporter(progress)
     desc = c.cw_labels_desc(
-        background=take_count("background", background, 0, 2**32 - 1),
+        background=find_value("background", background, source.ids, values),
         leave_open=take_flag("open", open),
         threads=take_threads(threads),
         max_triangles=take_count("max_triangles", max_triangles),
         progress=reporter.struct,
     )
     if labels is not None:
-        wanted = [take_count("a label", label, 0, 2**32 - 1) for label in labels]
+        wanted = [find_value("a label", label, source.ids, values) for label in labels]
         if not wanted:
             raise ValueError("labels is empty; None stands for all")
         desc.labels, desc.label_count = (c_uint32 * len(wanted))(*wanted), len(wanted)
@@ -447,4 +469,4 @@ def extract_labels(
         desc.no_smoothing = desc.max_move == 0
     out = Owner(c.cw_label_surfaces(), lib.cw_label_surfaces_free)
     reporter.call(lib.cw_extract_labels, byref(view), byref(desc), byref(out.struct))
-    return LabelSurfaces(out)
+    return LabelSurfaces(out, source.ids)

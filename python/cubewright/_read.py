@@ -25,7 +25,7 @@ from ._options import (
     take_text,
 )
 from ._progress import Progress, Reporter
-from ._volume import Label, Volume, take_spacing
+from ._volume import Label, Volume, take_ids, take_spacing
 
 Path = Union[str, "os.PathLike[str]"]
 UNITS = ("mm", "um", "cm", "m", "in", "ft")
@@ -66,7 +66,8 @@ def take_label(row: c.cw_label) -> Label:
     """Copies a label."""
     name = string_at(row.name).decode("utf-8", "replace") if row.name else None
     red, green, blue, opacity = row.color
-    return Label(row.value, row.layer, name, (red, green, blue, opacity) if row.has_color else None)
+    number = (-row.id if row.is_negative else row.id) or row.value
+    return Label(number, row.layer, name, (red, green, blue, opacity) if row.has_color else None)
 
 
 def take_labels(table: c.cw_label_table) -> list[Label]:
@@ -94,6 +95,8 @@ def read_volume(
     tilt: str = "correct",
     skip_damaged: bool = False,
     nodata: float | str | None = None,
+    of_labels: bool = False,
+    round_labels: bool = False,
     crop: Sequence[Sequence[int]] | None = None,
     coarsen: int = 1,
     allow_external: bool = False,
@@ -117,6 +120,9 @@ def read_volume(
     gaps, tilt  'stop', 'interpolate' or 'allow'; 'correct' or 'keep'
     skip_damaged  leave out slices whose files are damaged; what they leave are gaps
     nodata      value of voxels that have none; 'none': each has one, but NaN (as the file says)
+    of_labels   values are numbers of labels: where some are below 0 or beyond 32 bits, voxels become
+                places in the volume's ids. Else integers of 64 bits that do not fit are errors
+    round_labels  with of_labels: the nearest whole numbers are taken
     max_voxels, max_bytes  limits; 0: 2**40 voxels, any bytes
     note        called with one line for each finding and decision of the reader
     progress    see Progress
@@ -145,6 +151,9 @@ def read_volume(
         labels=pointer(table),
         progress=reporter.struct,
     )
+    ids = c.cw_label_ids()
+    if take_flag("of_labels", of_labels):
+        desc.ids, desc.round_labels = pointer(ids), take_flag("round_labels", round_labels)
     if nodata is not None and nodata != "none":
         desc.nodata, desc.nodata_value = c.cw_nodata.CW_NODATA_VALUE, take_number("nodata", nodata)
     elif nodata is not None:
@@ -166,8 +175,10 @@ def read_volume(
     try:
         reporter.call(lib.cw_volume_read, take_path("path", path), byref(desc), byref(out.struct), byref(form))
         volume = Volume._from_c(out)
+        volume.ids = take_ids(ids)
     finally:
         labels = take_labels(table)
+        lib.cw_label_ids_free(byref(ids))
     volume.labels, volume.format = labels, form.value.decode() if form.value else None
     return volume
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from ctypes import byref, c_double, c_void_p
+from ctypes import POINTER, byref, c_double, c_int64, c_uint32, c_void_p
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -53,7 +53,7 @@ class Statistics:
 
 @dataclass(frozen=True)
 class Label:
-    """A label that a file names. color is sRGB and opacity, 0 to 255, or None."""
+    """A label that a file names. value is its number, of up to 64 bits. color is sRGB and opacity, 0 to 255, or None."""
 
     value: int
     layer: int
@@ -84,6 +84,8 @@ class Volume:
     nodata       voxels equal to this, before scaling, are outside the domain, as NaN is
     level_set    values are distances, negative inside: functions then take low values as inside
 
+    ids are the numbers of labels for which voxels are places, as read_volume(of_labels=True) found
+    them; empty: voxels are their own numbers.
     Values may change while no function uses the volume; shape and type may not.
     Raises Error (ARGUMENT) for an affine that cannot be inverted, and an empty array.
     """
@@ -121,6 +123,7 @@ class Volume:
         self._set(struct, voxels, voxels)
         self.labels: list[Label] = []
         self.format: str | None = None
+        self.ids: list[int] = []
 
     @classmethod
     def _from_c(cls, owner: Owner[c.cw_volume]) -> Volume:
@@ -128,7 +131,7 @@ class Volume:
         volume = cls.__new__(cls)
         volume._coordinates = None
         volume._set(owner.struct, owner, None)
-        volume.labels, volume.format = [], None
+        volume.labels, volume.format, volume.ids = [], None, []
         return volume
 
     def _set(self, struct: c.cw_volume, owner: object, array: npt.NDArray[Any] | None) -> None:
@@ -537,6 +540,36 @@ def place_coordinates(struct: c.cw_volume, coordinates: Any) -> Any:
     for axis, each in enumerate(planes):
         struct.coordinates[axis] = each.ctypes.data_as(type(struct.coordinates[axis]))
     return planes
+
+
+def take_ids(ids: c.cw_label_ids) -> list[int]:
+    """Copies the numbers of labels."""
+    kept: list[int] = list(ids.ids[: ids.count]) if ids.count else []
+    return [number % 2**64 for number in kept] if ids.is_unsigned else kept
+
+
+def number_labels(volume: Any) -> Volume:
+    """Returns a volume of labels: integers of 64 bits, and those below 0, become places in its ids."""
+    if isinstance(volume, Volume):
+        return volume
+    array = np.asarray(volume)
+    wide = array.dtype.kind in "iu" and array.dtype.itemsize == 8
+    if not wide and not (array.dtype.kind == "i" and array.size and array.min() < 0):
+        return take_volume(volume)
+    values = np.ascontiguousarray(array, "u8" if array.dtype.kind == "u" else "i8")
+    numbers, ids = np.empty(array.shape, "u4"), c.cw_label_ids()
+    call(
+        lib.cw_labels_renumber,
+        values.ctypes.data_as(POINTER(c_int64)),
+        array.dtype.kind == "u",
+        values.size,
+        numbers.ctypes.data_as(POINTER(c_uint32)),
+        byref(ids),
+    )
+    made = Volume(numbers)
+    made.ids = take_ids(ids)
+    lib.cw_label_ids_free(byref(ids))
+    return made
 
 
 def take_volume(volume: Any) -> Volume:

@@ -138,7 +138,9 @@ def fill_part(part: c.cw_part, given: Part) -> None:
 
 
 def make_label(given: Label) -> c.cw_label:
-    label = c.cw_label(value=given.value, layer=given.layer)
+    label = c.cw_label(layer=given.layer)
+    if not lib.cw_label_parse(str(int(given.value)).encode(), byref(label)):
+        raise ValueError(f"a label's value is {given.value}; a whole number of up to 64 bits was expected")
     if given.name is not None:
         name = create_string_buffer(take_text("a label's name", given.name) or b"")
         label.name = cast(name, POINTER(c_char))

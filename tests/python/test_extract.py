@@ -214,6 +214,27 @@ class Surfaces(Case):
         with self.fails(cw.Status.ARGUMENT):
             cw.extract_labels(np.full((4, 4, 4), 0.5, "f4"))
 
+    def test_labels_have_numbers_of_64_bits(self):
+        cells = cw.make("labels/cells", dims=24, labels=5, type="u8").array
+        small = cw.extract_labels(cells)
+        for kind, numbers in (
+            ("u8", [0, 7, 2**32, 720575940600000091, 2**63 + 1, 2**64 - 1]),
+            ("i8", [0, -(2**63), -5, 3, 2**40, 2**63 - 1]),
+            ("i2", [0, -300, -1, 5, 6, 7]),
+        ):
+            array = np.array(numbers, kind)[cells]
+            found = cw.extract_labels(array)
+            self.assertEqual(found.voxels, {n: int((array == n).sum()) for n in sorted(numbers) if n})
+            for place in (1, 3, 5):
+                mesh, same = found.mesh(numbers[place]), small.mesh(place)
+                np.testing.assert_array_equal(mesh.vertices, same.vertices)
+                np.testing.assert_array_equal(mesh.triangles, same.triangles)
+            self.assertEqual(set(cw.extract_labels(array, [numbers[1]]).voxels), {numbers[1]})
+            self.assertEqual(len(found.mesh(12345).triangles), 0)
+            self.assertEqual({n for p in found.patches for n in p.labels}, set(numbers))
+        self.assertEqual(set(cw.extract_labels(cells.astype("i8")).voxels), {1, 2, 3, 4, 5})
+        self.assertRaises(ValueError, found.mesh, 2**64)
+
 
 class Progress(Case):
     def test_reports_name_steps_and_rise_to_one(self):

@@ -39,4 +39,4 @@ cubewright info several
 cubewright info several --array text; echo "exit $?"
 array wide '[2, 2, 2]' '<u8'
 printf '%s' '0000000011111111222222223333333344444444555555556666666677777777' >wide/0.0.0
-cubewright info wide; echo "exit $?"
+cubewright extract wide --iso 1 -o wide.stl; echo "exit $?"

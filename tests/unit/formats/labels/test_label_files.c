@@ -217,8 +217,9 @@ static void errors_name_the_line_and_the_field(void **state)
         const char *file, *text, *message;
     } bad[] = {
         {"a.txt", "1 a 1 2 3 0\n2 b 1 256 3 0\n", "line 2: 'G' is '256'"},
-        {"a.txt", "1 a 1 2 3 0\n\n#\n4294967296 b 1 2 3 0\n", "line 4: 'number' is '42949672"},
-        {"a.txt", "1 a 1 2 3 0\n-1 b 1 2 3 0\n", "line 2: 'number' is '-1'"},
+        {"a.txt", "1 a 1 2 3 0\n\n#\n18446744073709551616 b 1 2 3 0\n",
+         "line 4: 'number' is '18446744"},
+        {"a.txt", "1 a 1 2 3 0\n-x b 1 2 3 0\n", "line 2: 'number' is '-x'"},
         {"a.txt", "1 a 1 2 3 0\n2 b 1 2\n", "line 2 has 4 words"},
         {"a.txt", "1 a 1 2 3 0\n2 b 1 2 3 0.5\n", "line 2: 'A' is '0.5'"},
         {"a.label", "1 1 2 3 1 1 1 \"a\"\n2 1 2 3 1.5 1 1 \"a\"\n", "line 2: 'A' is '1.5'"},
