@@ -225,7 +225,7 @@ static cw_status compare_looks(cli_check_run *s, cw_error *err)
 }
 
 /* The diagonal is that of the mesh's box, a voxel the cube root of its volume. */
-static double tolerance_mm(const cli_check_run *s)
+double cli_check_tolerance_mm(const cli_check_run *s)
 {
     const double *spacing = s->volume.spacing;
     double low[3], high[3];
@@ -300,7 +300,7 @@ cw_status cli_check_measure(cli_check_run *s, cw_error *err)
             return cwi_fail_memory(err);
     }
     s->findings.quality = &s->quality;
-    s->findings.tolerance_mm = tolerance_mm(s);
+    s->findings.tolerance_mm = cli_check_tolerance_mm(s);
     s->findings.has_normals = mesh->normals;
     s->findings.file_fault = s->mesh.file.fault;
     s->findings.file_bytes = find_file_bytes(s->mesh.path);

@@ -48,12 +48,16 @@ typedef struct cli_check_run {
     cw_findings findings;
     cw_verdict verdicts[CW_MAX_VERDICTS];
     size_t verdict_count;
+    struct cli_part_checks *solids; /* of a file of several; else NULL */
     cli_report report;
     double start;
 } cli_check_run;
 
 /* Returns the volume below which components of the source's surface are left out. */
 double cli_check_least_mm3(const cli_check_run *run);
+
+/* Returns the tolerance for distances in millimetres; 0: none. */
+double cli_check_tolerance_mm(const cli_check_run *run);
 
 /* Returns true if walls and gaps are painted: distances from something have precedence. */
 bool cli_check_paints_walls(const cli_check_args *args);

@@ -1,5 +1,6 @@
 /* The command check: measures the defects of a mesh and its distances to a field or another
  * mesh, and holds them against a profile. */
+#include "cli/check/check_labels.h"
 #include "cli/check/check_run.h"
 #include "cli/framework/commands.h"
 #include "cli/framework/console.h"
@@ -38,7 +39,7 @@ static const cli_option options[] = {
     CLI_PRINTER_OPTIONS(cli_check_args),
     CLI_HEADED("Distance to a source or a reference"),
     {"source", 's', CLI_TEXT, "VOLUME",
-     "Volume to measure the distance to, and to compare the topology with",
+     "Volume to compare with at --iso; for a file of labels the label map, label by label",
      offsetof(cli_check_args, source), CLI_VALUES_VOLUME},
     {"iso", 'i', CLI_LEVEL, "V",
      "Isovalue of the source's surface: a number, or a name as for 'extract'",
@@ -77,7 +78,6 @@ static const cli_option options[] = {
 };
 
 static const cli_rule rules[] = {
-    {"source", CLI_NEEDS, "iso"},
     {"iso min-volume largest fill-voids", CLI_NEEDS, "source"},
     {"tolerance", CLI_NEEDS, "source reference"},
     {"looks", CLI_NEEDS, "reference"},
@@ -91,7 +91,7 @@ static void put_params(cli_json *j, const void *p, const cli_made *made)
     (void)made;
     cli_json_text(j, "profile", profiles[args->profile]);
     cli_json_bool(j, "deep", args->deep);
-    if (args->source) {
+    if (args->source && s->iso.given) {
         cli_json_number(j, "iso", s->iso.value);
         cli_json_text(j, "inside", args->inside ? "below" : "above");
         cli_json_bool(j, "open", args->open);
@@ -123,6 +123,8 @@ static void put_facts(cli_json *j, const void *p)
         return;
     cli_json_text(j, "profile", profiles[s->args->profile]);
     cli_json_verdicts(j, s->verdicts, s->verdict_count);
+    if (s->solids)
+        cli_json_part_checks(j, s->solids);
     if (s->findings.print)
         cli_json_print(j, &s->print);
     cli_json_errors(j, &s->findings);
@@ -187,25 +189,56 @@ static cw_status check_args_of(cli_check_run *s, cw_error *err)
     return args->defects ? check_defects_path(args, err) : CW_OK;
 }
 
+static bool has_solids(const cli_check_run *s)
+{
+    return s->solids && s->solids->count > 0;
+}
+
+/* Returns true if the mesh is compared as a whole with something, or painted. */
+static bool compares_whole(const cli_check_args *args)
+{
+    return args->iso.given || args->reference || args->defects;
+}
+
+/* Finds the solids of a file that has several. Only those of labels have a source without --iso. */
+static cw_status find_solids(cli_check_run *s, cw_error *err)
+{
+    s->solids = calloc(1, sizeof *s->solids);
+    cw_status st = s->solids ? cli_find_part_checks(s, s->solids, err) : cwi_fail_memory(err);
+    if (st == CW_OK && has_solids(s))
+        cli_say("%s: its %zu %s are judged each by itself", s->mesh.path, s->solids->count,
+                s->solids->of_labels ? "labels" : "parts");
+    if (st == CW_OK && s->args->source && !s->solids->of_labels)
+        st = cwi_fail(err, CW_ERR_ARGUMENT,
+                      "%s: no surfaces of labels; --source then needs --iso V, the isovalue",
+                      s->mesh.path);
+    return st;
+}
+
 static cw_status read_inputs(cli_check_run *s, cw_error *err)
 {
     const cli_check_args *args = s->args;
     cli_report_begin(&s->report);
     cw_status st =
         cli_read_mesh(args->common.inputs[0], args->mesh_reader, &args->input, &s->mesh, err);
+    if (st == CW_OK && !compares_whole(args))
+        st = find_solids(s, err);
+    else if (st == CW_OK && args->source && !args->iso.given)
+        st = cwi_fail(err, CW_ERR_ARGUMENT, "--source needs --iso V with --reference and --defects");
     if (st == CW_OK && args->reference)
         st = cli_read_reference(args->reference, args->mesh_reader, &args->input, &s->reference,
                                 err);
     cli_input source = cli_source_input(&args->input);
-    source.makes_surface = true;
+    source.makes_surface = args->iso.given;
+    source.of_labels = !args->iso.given;
     if (st == CW_OK && args->source) {
         st = cli_read_volume(args->source, &source, false, &s->volume, err);
         if (st == CW_ERR_LIMIT)
             st = cli_fail_whole(st, cli_find_unstreamed_preparation(&source), err);
     }
-    if (st == CW_OK && args->source)
+    if (st == CW_OK && args->source && args->iso.given)
         st = cli_choose_level(&s->volume, &source, &s->iso, err);
-    if (st == CW_OK && args->source)
+    if (st == CW_OK && args->source && args->iso.given)
         st = cli_prepare_inside(&source, &s->volume, &s->iso.value, 1, args->inside, err);
     if (st == CW_OK)
         cli_report_end(&s->report, "read", 1, s->mesh.mesh.triangle_count);
@@ -252,8 +285,10 @@ static cw_status paint_defects(cli_check_run *s, cw_error *err)
 static void print_facts(const cli_check_run *s)
 {
     const cw_quality *q = &s->quality;
-    cli_result("%s: %s component%s", s->mesh.path, cli_count(q->components),
-               q->components == 1 ? "" : "s");
+    cli_result("%s: ", s->mesh.path);
+    if (has_solids(s))
+        cli_result("%zu %s, ", s->solids->count, s->solids->of_labels ? "labels" : "parts");
+    cli_result("%s component%s", cli_count(q->components), q->components == 1 ? "" : "s");
     if (q->cavities)
         cli_result(", %s of them cavities", cli_count(q->cavities));
     if (q->genus >= 0)
@@ -268,7 +303,8 @@ static void print_facts(const cli_check_run *s)
 static cw_status judge_mesh(cli_check_run *s, cw_error *err)
 {
     const cli_check_args *args = s->args;
-    s->verdict_count = cw_check_judge(&s->findings, (cw_profile)args->profile, s->verdicts);
+    if (!has_solids(s))
+        s->verdict_count = cw_check_judge(&s->findings, (cw_profile)args->profile, s->verdicts);
     cli_made *made = &s->report.made[0];
     made->quality = s->quality;
     made->measured = made->shells = true;
@@ -291,6 +327,9 @@ static cw_status judge_mesh(cli_check_run *s, cw_error *err)
 
 static void free_state(cli_check_run *s)
 {
+    if (s->solids)
+        cli_free_part_checks(s->solids);
+    free(s->solids);
     cw_crossings_free(&s->crossings);
     cli_free_mesh(&s->mesh);
     cli_free_mesh(&s->reference);
@@ -307,7 +346,7 @@ static cw_status check_mesh(void *state, cw_error *err)
     if (st == CW_OK)
         st = read_inputs(s, err);
     if (st == CW_OK)
-        st = cli_check_measure(s, err);
+        st = has_solids(s) ? cli_check_parts(s, s->solids, err) : cli_check_measure(s, err);
     return st == CW_OK ? judge_mesh(s, err) : st;
 }
 

@@ -106,6 +106,29 @@ CW_API bool cw_check_holds(const cw_verdict *verdicts, size_t count);
  * grade  a grade */
 CW_API const char *cw_grade_name(cw_grade grade);
 
+/* How parts of one mesh meet: the surfaces of labels, or other solids that share interfaces. */
+typedef struct cw_contacts {
+    size_t triangles; /* of all parts */
+    size_t shared; /* places of a triangle that two parts have, seen from opposite sides: their
+                           interface */
+    size_t overlapping; /* places where two parts or more see a triangle from the same side */
+    size_t neighbours;  /* pairs of parts that share triangles */
+} cw_contacts;
+
+/* Finds the triangles that parts share. Corners are alike where their positions are equal.
+ *
+ * mesh      of all parts, merged
+ * part_of   triangle_count numbers of parts
+ * contacts  filled on success
+ * once      set to the mesh with each shared triangle once, without attributes, to look for
+ *           intersections between parts; may be NULL. Free it with cw_mesh_free()
+ * Returns   CW_ERR_ARGUMENT as cw_mesh_check(); CW_ERR_LIMIT: more than 2^32 / 3 triangles;
+ *           CW_ERR_NO_MEMORY
+ * Cost      n log n triangles */
+CW_NODISCARD CW_API cw_status cw_contacts_find(const cw_mesh *mesh, const uint32_t *part_of,
+                                               cw_contacts *contacts, cw_mesh *once,
+                                               cw_error *err);
+
 /* A colour (red, green, blue) for each defect, for cw_check_paint(). */
 typedef struct cw_paint {
     cw_defect defect;         /* the defect that it shows */

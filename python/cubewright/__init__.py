@@ -16,7 +16,7 @@ from ._about import Feature, Format, features, formats, make
 from ._appearance import Appearance, LookDifference, appearance, appearance_view
 from ._atlas import Atlas, Baked, TextureDistance, atlas, bake_maps, bake_normals, bake_pictures, texture_distance
 from ._boolean import Combined, boolean
-from ._check import Check, Verdict, check, report
+from ._check import Check, Verdict, check, contacts, report
 from ._color import color_by
 from ._cut import Cut, cut
 from ._engrave import Engraved, engrave
@@ -86,6 +86,7 @@ __all__ = [
     "bake_pictures",
     "boolean",
     "check",
+    "contacts",
     "close_handles",
     "color_by",
     "crease_normals",

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import ctypes
 from collections.abc import Callable, Sequence
-from ctypes import POINTER, byref, c_float, c_uint8, pointer
+from ctypes import POINTER, byref, c_float, c_uint8, c_uint32, pointer
 from dataclasses import dataclass
 from typing import Any
 
@@ -276,6 +276,27 @@ def check(
         return m.judge(wanted)
     finally:
         lib.cw_crossings_free(byref(m.crossings))
+
+
+def contacts(meshes: Sequence[Mesh]) -> dict[str, int]:
+    """Finds the triangles that solids share, such as the labels of LabelSurfaces.meshes().
+
+    Counts triangles, those shared by two solids that see them from opposite sides, places where solids overlap, since
+    two see a triangle from the same side, and neighbours, the pairs of solids with an interface.
+    Raises Error: ARGUMENT, LIMIT, NO_MEMORY.
+    """
+    solids = [take_mesh(f"meshes[{n}]", mesh) for n, mesh in enumerate(meshes)]
+    if not solids:
+        return unpack(c.cw_contacts())
+    starts = np.cumsum([0] + [len(mesh.vertices) for mesh in meshes])
+    origins = [np.array(solid.origin[:]) for solid in solids]
+    shifted = [mesh.vertices + (o - origins[0]).astype("f4") for mesh, o in zip(meshes, origins)]
+    triangles = [mesh.triangles + np.uint32(start) for mesh, start in zip(meshes, starts)]
+    part = np.concatenate([np.full(len(t), n, "u4") for n, t in enumerate(triangles)])
+    merged = Mesh.from_arrays(np.concatenate(shifted), np.concatenate(triangles))
+    out = c.cw_contacts()
+    call(lib.cw_contacts_find, byref(merged._struct), part.ctypes.data_as(POINTER(c_uint32)), byref(out), None)
+    return unpack(out)
 
 
 def report(mesh: Mesh, **options: Any) -> dict[str, Any]:

@@ -1711,6 +1711,21 @@ cw_verdict._fields_ = [
 ]
 
 
+class cw_contacts(Structure):
+    triangles: int
+    shared: int
+    overlapping: int
+    neighbours: int
+
+
+cw_contacts._fields_ = [
+    ("triangles", c_size_t),
+    ("shared", c_size_t),
+    ("overlapping", c_size_t),
+    ("neighbours", c_size_t),
+]
+
+
 class cw_paint(Structure):
     defect: int
     name: bytes | None
@@ -4316,6 +4331,7 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "cw_check_judge": (c_size_t, [POINTER(cw_findings), c_int, POINTER(cw_verdict)]),
     "cw_check_holds": (c_bool, [POINTER(cw_verdict), c_size_t]),
     "cw_grade_name": (c_char_p, [c_int]),
+    "cw_contacts_find": (c_int, [POINTER(cw_mesh), POINTER(c_uint32), POINTER(cw_contacts), POINTER(cw_mesh), POINTER(cw_error)]),
     "cw_check_paints": (POINTER(cw_paint), [POINTER(c_size_t)]),
     "cw_check_paint": (c_int, [POINTER(cw_mesh), POINTER(c_uint8), POINTER(c_float), c_double, POINTER(cw_mesh), POINTER(cw_error)]),
     "cw_colormap_name": (c_char_p, [c_int]),

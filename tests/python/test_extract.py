@@ -203,6 +203,11 @@ class Surfaces(Case):
         for label, mesh in found.meshes().items():
             self.assertAlmostEqual(cw.check(mesh).quality["volume_mm3"] / counts[label], 1, 2)
         self.assertEqual(sum(p.count for p in found.patches), len(found.shared.triangles))
+        meetings = cw.contacts(list(found.meshes().values()))
+        self.assertEqual(meetings["shared"], sum(p.count for p in found.patches if 0 not in p.labels))
+        self.assertEqual(meetings["neighbours"], sum(0 not in p.labels for p in found.patches))
+        self.assertEqual(meetings["overlapping"], 0)
+        self.assertEqual(cw.contacts([found.mesh(3), found.mesh(3)])["overlapping"], len(found.mesh(3).triangles))
         shared = found.shared
         less = found.simplify(ratio=0.3)
         self.assertLess(len(less.shared.triangles), 0.5 * len(shared.triangles))
