@@ -224,7 +224,8 @@ static cw_status read_inputs(cli_check_run *s, cw_error *err)
     if (st == CW_OK && !compares_whole(args))
         st = find_solids(s, err);
     else if (st == CW_OK && args->source && !args->iso.given)
-        st = cwi_fail(err, CW_ERR_ARGUMENT, "--source needs --iso V with --reference and --defects");
+        st = cwi_fail(err, CW_ERR_ARGUMENT,
+                      "--source needs --iso V with --reference and --defects");
     if (st == CW_OK && args->reference)
         st = cli_read_reference(args->reference, args->mesh_reader, &args->input, &s->reference,
                                 err);

@@ -34,11 +34,20 @@ cw_status cli_check_label_args(const cli_extract_args *args, cw_error *err)
     if (args->common.input_count > 1)
         return cwi_fail(err, CW_ERR_ARGUMENT, "--labels takes one volume; there are %zu",
                         args->common.input_count);
-    cw_status st = cli_check_stages(args, CW_SOURCE_LABELS, err);
+    cli_extract_args surface =
+        *args; /* without the stages that clean voxels of labels instead */
+    surface.least = (cli_amount){0};
+    surface.largest = 0;
+    surface.fill_voids = false;
+    cw_status st = cli_check_stages(&surface, CW_SOURCE_LABELS, err);
     if (st == CW_OK)
         st = check_lod(args, err);
     if (st != CW_OK)
         return st;
+    if (args->stream == CLI_STREAM_ALWAYS && cli_cleans_labels(args))
+        return cwi_fail(err, CW_ERR_ARGUMENT,
+                        "--stream always cannot be combined with --min-volume, --largest and "
+                        "--fill-voids: voxels of labels are cleaned in memory");
     if (args->per_label && !cw_simplify_available())
         return cwi_fail(err, CW_ERR_UNSUPPORTED,
                         "--per-label needs OpenMesh, which this build lacks: install "

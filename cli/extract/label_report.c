@@ -83,6 +83,10 @@ static void put_row(FILE *out, const cli_label_run *r, const cli_label_item *ite
                     cw_label_patch_area(s, &s->patches[p]));
             separator = ";";
         }
+    const cw_label_change *change = cli_find_label_change(item);
+    if (change)
+        fprintf(out, ",%zu,%zu,%zu,%zu", change->voxels_before, change->components_removed,
+                change->voxels_removed, change->voxels_added);
     fputc('\n', out);
 }
 
@@ -91,8 +95,11 @@ static void put_table(FILE *out, const void *p)
 {
     const cli_label_run *r = p;
     fputs("LabelValue,Name,Color_R,Color_G,Color_B,Color_A,layer,voxels,voxel_volume_mm3,"
-          "mesh_volume_mm3,area_mm2,triangles,components,neighbour_areas_mm2\n",
+          "mesh_volume_mm3,area_mm2,triangles,components,neighbour_areas_mm2",
           out);
+    if (cli_cleans_labels(r->args))
+        fputs(",voxels_before,components_removed,voxels_removed,voxels_added", out);
+    fputc('\n', out);
     for (size_t n = 0; n < r->item_count; n++)
         put_row(out, r, &r->items[n]);
 }
@@ -155,6 +162,15 @@ static void put_item(cli_json *j, const cli_label_run *r, const cli_label_item *
     cli_json_number(j, "area", item->facts.quality.area_mm2);
     cli_json_count(j, "triangles", item->facts.quality.triangles);
     cli_json_count(j, "components", item->facts.quality.components);
+    const cw_label_change *change = cli_find_label_change(item);
+    if (change) {
+        cli_json_open(j, "cleaned", '{');
+        cli_json_count(j, "voxels_before", change->voxels_before);
+        cli_json_count(j, "components_removed", change->components_removed);
+        cli_json_count(j, "voxels_removed", change->voxels_removed);
+        cli_json_count(j, "voxels_added", change->voxels_added);
+        cli_json_close(j, '}');
+    }
     put_neighbours(j, r, item);
     cli_json_stages(j, &item->facts, 0);
     cli_json_close(j, '}');

@@ -46,7 +46,7 @@ static cw_status read_label_map(cli_label_run *r, cw_error *err)
     cli_input input = args->input;
     input.array.component.given = true; /* all are taken, unless one was stated */
     input.stream = args->stream;
-    input.may_stream = true;
+    input.may_stream = !cli_cleans_labels(args);
     input.of_labels = true;
     cli_report_begin(&r->report);
     cw_status st = cli_read_volume(args->common.inputs[0], &input, false, &r->volume, err);
@@ -91,12 +91,12 @@ static cw_status extract_slices(void *user, const cw_slice_source *source, cw_er
 
 /* Extracts the interfaces of one component from its voxels, or from slices. */
 static cw_status extract_component(const cli_label_run *r, uint32_t number,
-                                   const cw_labels_desc *desc, cw_label_surfaces *surfaces,
+                                   const cw_labels_desc *desc, cli_label_layer *layer,
                                    cw_error *err)
 {
     cli_input input = r->args->input;
     input.of_labels = true;
-    label_slices slices = {desc, surfaces};
+    label_slices slices = {desc, &layer->surfaces};
     const cw_slice_visitor visitor = {extract_slices, &slices};
     cw_volume view;
     input.array.component.number = number;
@@ -106,7 +106,9 @@ static cw_status extract_component(const cli_label_run *r, uint32_t number,
     const cw_volume all = view;
     if (st == CW_OK && input.coarsen_view)
         st = cw_volume_coarsen(&all, r->volume.coarsen, &view, err);
-    return st == CW_OK ? cw_extract_labels(&view, desc, surfaces, err) : st;
+    if (st == CW_OK && cli_cleans_labels(r->args))
+        return cli_clean_and_extract(r, &view, desc, layer, err);
+    return st == CW_OK ? cw_extract_labels(&view, desc, &layer->surfaces, err) : st;
 }
 
 /* Extracts the interfaces of one component of the volume. */
@@ -135,7 +137,7 @@ static cw_status extract_layer(cli_label_run *r, uint32_t number, cw_error *err)
         .progress =
             cli_progress((double)dim[0] * (double)dim[1] * (double)dim[2] / 1e6, "Mvoxel")};
     layer->number = number;
-    st = extract_component(r, number, &desc, &layer->surfaces, err);
+    st = extract_component(r, number, &desc, layer, err);
     free(values);
     if (st != CW_OK)
         return cwi_fail_in(err, st, r->volume.path);
@@ -332,6 +334,9 @@ static cw_status make_meshes(cli_label_run *r, cw_error *err)
     set.desc.extract = (cw_extract_desc){.no_normals = args->normals || args->shared_faces,
                                          .threads = (int)args->input.threads};
     set.desc.simplify = r->error_mm > 0 || r->target ? &simplify : NULL;
+    set.desc.min_volume_mm3 = 0; /* voxels were cleaned */
+    set.desc.largest = 0;
+    set.desc.fill_voids = false;
     set.desc.check = needs_quality(args);
     set.desc.watch = (cw_pipeline_watch){begin_stage, end_stage, r};
     cw_pipeline_facts facts = {0};
@@ -381,6 +386,8 @@ static cw_status run_labels(void *state, cw_error *err)
     if (st == CW_OK)
         st = extract_layers(r, err);
     if (st == CW_OK)
+        cli_tell_cleaning(r);
+    if (st == CW_OK)
         st = tell_missing(r, err);
     if (st == CW_OK)
         st = list_items(r, err);
@@ -398,7 +405,7 @@ static void free_run(cli_label_run *r)
     for (size_t n = 0; n < r->item_count; n++)
         cw_mesh_free(&r->items[n].mesh);
     for (size_t n = 0; n < r->layer_count; n++)
-        cw_label_surfaces_free(&r->layers[n].surfaces);
+        cli_free_label_layer(&r->layers[n]);
     for (size_t n = 0; n < r->level_count * r->item_count; n++)
         cw_mesh_free(&r->levels[n]);
     free(r->levels);

@@ -11,6 +11,8 @@
 typedef struct cli_label_layer {
     uint32_t number;
     cw_label_surfaces surfaces;
+    cw_label_change *changes; /* of cleaning, by label; or NULL */
+    size_t change_count;
 } cli_label_layer;
 
 /* A label with its surface. */
@@ -43,6 +45,21 @@ typedef struct cli_label_run {
     cli_report report;
     double start;
 } cli_label_run;
+
+/* Returns true if options clean the voxels of labels. */
+bool cli_cleans_labels(const cli_extract_args *args);
+
+/* Cleans the labels of a component, and extracts them. Returns as cw_labels_clean(), cw_extract_labels() */
+CW_NODISCARD cw_status cli_clean_and_extract(const cli_label_run *run, const cw_volume *view,
+                                             const cw_labels_desc *desc, cli_label_layer *layer,
+                                             cw_error *err);
+
+/* Says what cleaning changed, and which labels it removed. */
+void cli_tell_cleaning(const cli_label_run *run);
+
+/* Finds what cleaning changed of an item; NULL: nothing was cleaned. */
+const cw_label_change *cli_find_label_change(const cli_label_item *item);
+void cli_free_label_layer(cli_label_layer *layer);
 
 /* Returns true for an output that has a file a label: it holds {label} or {name}. */
 bool cli_has_file_a_label(const char *output);

@@ -34,7 +34,7 @@ const cli_synonym cli_synonyms[] = {
      "--looks|--bake",
      "'check --reference MESH --looks none' measures how alike two meshes look: PSNR and CIEDE2000 of eight "
      "views, with the pictures on them and without."},
-    {"denois|despeckl", NULL, "--denoise|smooth|--min-volume|--drop-components",
+    {"denois|despeckl|dust", NULL, "--denoise|smooth|--min-volume|--drop-components",
      "'extract --denoise' smooths the values of volumes, 'smooth' meshes. --min-volume and "
      "--drop-components remove small components."},
     {"smooth|filter|laplacian|taubin|gaussian|fairing|noisy", "smooth",

@@ -112,6 +112,51 @@ CW_NODISCARD CW_API cw_status cw_label_counts(const cw_volume *volume, uint32_t 
 /* Frees the counts of cw_label_counts(). Harmless on NULL. */
 CW_API void cw_label_counts_free(cw_label_count *counts);
 
+/* What is cleaned in a label map. Zero-initialise the struct and set what you need. */
+typedef struct cw_label_clean_desc {
+    uint32_t version;    /* 0: the first version of this struct */
+    uint32_t background; /* the label of what is no object */
+    size_t
+        min_voxels; /* components of labels with fewer voxels go to a neighbour; default: none do */
+    size_t largest; /* components of each label that stay, those of most voxels; default: all */
+    bool
+        fill_voids; /* background that lies in one label, without a way to the volume's border, goes to
+                            it; default: it stays */
+} cw_label_clean_desc;
+
+/* A label before and after cleaning. */
+typedef struct cw_label_change {
+    uint32_t label;            /* its number */
+    size_t voxels_before;      /* number of its voxels in the map */
+    size_t voxels;             /* and in the cleaned one */
+    size_t components_removed; /* of it, which went to neighbours */
+    size_t voxels_removed;     /* of those */
+    size_t voxels_added;       /* of voids, and of other labels' components */
+} cw_label_change;
+
+/* Removes small components of labels, and fills voids. A component is a set of voxels that are joined as
+ * cw_extract_labels() joins them, so it is one of the label's surface. One that goes gets the label,
+ * or the background, with which it shares the most faces; of equal ones the lowest. Components among
+ * others that go follow when those have gone. Voids are filled first.
+ *
+ * volume   as for cw_extract_labels(); its first component and step
+ * desc     borrowed
+ * cleaned  filled with CW_U32 on success, emptied on failure; free it with cw_volume_free()
+ * changes  set to *count of them, one a label in rising order; free it with cw_label_changes_free(). Both
+ *          may be NULL
+ * count    their number
+ * Returns  CW_ERR_ARGUMENT: a value is no label, naming the voxel; CW_ERR_UNSUPPORTED: sparse and irregular
+ *          grids; CW_ERR_LIMIT; CW_ERR_NO_MEMORY
+ * Cost     two passes over the voxels, and 16 bytes for each run of a label in a row
+ * Source   union of sets [TarjanVanLeeuwen1984] */
+CW_NODISCARD CW_API cw_status cw_labels_clean(const cw_volume *volume,
+                                              const cw_label_clean_desc *desc,
+                                              cw_volume *cleaned, cw_label_change **changes,
+                                              size_t *count, cw_error *err);
+
+/* Frees the changes of cw_labels_clean(). Harmless on NULL. */
+CW_API void cw_label_changes_free(cw_label_change *changes);
+
 /* Frees the surfaces and zeroes the struct. Harmless on a zeroed or already freed one. */
 CW_API void cw_label_surfaces_free(cw_label_surfaces *surfaces);
 

@@ -21,7 +21,17 @@ from ._color import color_by
 from ._cut import Cut, cut
 from ._engrave import Engraved, engrave
 from ._errors import Error, Status
-from ._extract import Extractor, LabelSurfaces, Patch, Settings, extract, extract_labels, extract_levels
+from ._extract import (
+    Extractor,
+    LabelChange,
+    LabelSurfaces,
+    Patch,
+    Settings,
+    clean_labels,
+    extract,
+    extract_labels,
+    extract_levels,
+)
 from ._handles import Closed, close_handles
 from ._library import lib as _lib
 from ._memory import memory_limit, memory_used
@@ -55,6 +65,7 @@ __all__ = [
     "Feature",
     "Format",
     "Label",
+    "LabelChange",
     "LabelSurfaces",
     "LookDifference",
     "Mesh",
@@ -86,9 +97,10 @@ __all__ = [
     "bake_pictures",
     "boolean",
     "check",
-    "contacts",
+    "clean_labels",
     "close_handles",
     "color_by",
+    "contacts",
     "crease_normals",
     "cut",
     "cut_pieces",

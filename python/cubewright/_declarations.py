@@ -2762,6 +2762,42 @@ cw_label_surfaces._fields_ = [
 ]
 
 
+class cw_label_clean_desc(Structure):
+    version: int
+    background: int
+    min_voxels: int
+    largest: int
+    fill_voids: bool
+
+
+cw_label_clean_desc._fields_ = [
+    ("version", c_uint32),
+    ("background", c_uint32),
+    ("min_voxels", c_size_t),
+    ("largest", c_size_t),
+    ("fill_voids", c_bool),
+]
+
+
+class cw_label_change(Structure):
+    label: int
+    voxels_before: int
+    voxels: int
+    components_removed: int
+    voxels_removed: int
+    voxels_added: int
+
+
+cw_label_change._fields_ = [
+    ("label", c_uint32),
+    ("voxels_before", c_size_t),
+    ("voxels", c_size_t),
+    ("components_removed", c_size_t),
+    ("voxels_removed", c_size_t),
+    ("voxels_added", c_size_t),
+]
+
+
 class cw_label_simplify_desc(Structure):
     version: int
     error_mm: float
@@ -4437,6 +4473,8 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "cw_extract_labels_stream": (c_int, [POINTER(cw_slice_source), POINTER(cw_labels_desc), POINTER(cw_label_surfaces), POINTER(cw_error)]),
     "cw_label_counts": (c_int, [POINTER(cw_volume), c_uint32, POINTER(POINTER(cw_label_count)), POINTER(c_size_t), POINTER(cw_error)]),
     "cw_label_counts_free": (None, [POINTER(cw_label_count)]),
+    "cw_labels_clean": (c_int, [POINTER(cw_volume), POINTER(cw_label_clean_desc), POINTER(cw_volume), POINTER(POINTER(cw_label_change)), POINTER(c_size_t), POINTER(cw_error)]),
+    "cw_label_changes_free": (None, [POINTER(cw_label_change)]),
     "cw_label_surfaces_free": (None, [POINTER(cw_label_surfaces)]),
     "cw_label_mesh": (c_int, [POINTER(cw_label_surfaces), c_uint32, POINTER(cw_mesh), POINTER(cw_error)]),
     "cw_label_patch_mesh": (c_int, [POINTER(cw_label_surfaces), POINTER(cw_label_patch), POINTER(cw_mesh), POINTER(cw_error)]),

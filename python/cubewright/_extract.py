@@ -425,6 +425,59 @@ def find_value(name: str, label: Any, ids: list[int], values: dict[int, int]) ->
     return values.get(number, 2**32 - 1)
 
 
+@dataclass(frozen=True)
+class LabelChange:
+    """What cleaning changed of a label, in voxels and components."""
+
+    voxels_before: int
+    voxels: int
+    components_removed: int
+    voxels_removed: int
+    voxels_added: int
+
+
+def clean_labels(
+    volume: AnyVolume,
+    *,
+    min_voxels: int = 0,
+    largest: int = 0,
+    fill_voids: bool = False,
+    background: int = 0,
+    component: int = 0,
+    step: int = 0,
+) -> tuple[Volume, dict[int, LabelChange]]:
+    """Removes small components of labels, and fills voids: returns the map and what changed of each label.
+
+    volume      as for extract_labels()
+    min_voxels  components with fewer voxels go to the label, or the background, with the most common faces
+    largest     components of each label that stay; 0: all
+    fill_voids  background within one label goes to it
+
+    Raises Error: ARGUMENT (a value is no label), UNSUPPORTED, LIMIT, NO_MEMORY.
+    """
+    source = number_labels(volume)
+    view = source._select(component, step)
+    values = {number: value for value, number in enumerate(source.ids)}
+    desc = c.cw_label_clean_desc(
+        min_voxels=take_count("min_voxels", min_voxels),
+        largest=take_count("largest", largest),
+        fill_voids=take_flag("fill_voids", fill_voids),
+        background=find_value("background", background, source.ids, values),
+    )
+    out, rows, count = Owner(c.cw_volume(), lib.cw_volume_free), POINTER(c.cw_label_change)(), c_size_t()
+    call(lib.cw_labels_clean, byref(view), byref(desc), byref(out.struct), byref(rows), byref(count))
+    changes = {
+        source.ids[row.label] if source.ids else row.label: LabelChange(
+            row.voxels_before, row.voxels, row.components_removed, row.voxels_removed, row.voxels_added
+        )
+        for row in rows[: count.value]
+    }
+    lib.cw_label_changes_free(rows)
+    cleaned = Volume._from_c(out)
+    cleaned.ids = source.ids
+    return cleaned, changes
+
+
 def extract_labels(
     volume: AnyVolume,
     labels: Iterable[int] | None = None,

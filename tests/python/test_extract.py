@@ -219,6 +219,21 @@ class Surfaces(Case):
         with self.fails(cw.Status.ARGUMENT):
             cw.extract_labels(np.full((4, 4, 4), 0.5, "f4"))
 
+    def test_labels_are_cleaned(self):
+        cells = cw.make("labels/cells", dims=20, labels=4, type="u8").array.astype("i8") * -7
+        dirty = cells.copy()
+        dirty[10, 10, 10] = -100
+        dirty[0, 0, 0] = dirty[0, 0, 1] = -7
+        cleaned, changes = cw.clean_labels(dirty, min_voxels=3)
+        np.testing.assert_array_equal(np.array(cleaned.ids)[cleaned.array], cells)
+        self.assertEqual((changes[-100].voxels, changes[-100].components_removed), (0, 1))
+        self.assertEqual((changes[-7].voxels_removed, changes[-7].voxels), (2, int((cells == -7).sum())))
+        self.assertEqual(set(cw.extract_labels(cleaned).voxels), {-7, -14, -21, -28})
+        hollow = np.zeros((9, 9, 9), "u1")
+        hollow[1:8, 1:8, 1:8] = 5
+        hollow[4, 4, 4] = 0
+        self.assertEqual(cw.clean_labels(hollow, fill_voids=True)[0].array[4, 4, 4], 5)
+
     def test_labels_have_numbers_of_64_bits(self):
         cells = cw.make("labels/cells", dims=24, labels=5, type="u8").array
         small = cw.extract_labels(cells)
