@@ -19,9 +19,14 @@
 #include <unistd.h>
 
 /* One input, and the process that works on it. */
+/* Options of files beside the output, which each input has of its own. */
+static const char *const beside[] = {"table", "defects", "preview"};
+enum { BESIDE = sizeof beside / sizeof *beside };
+
 typedef struct job {
     const char *input;
     char *output;    /* its name, with '*' for what is known only later; NULL: none */
+    char *beside[BESIDE]; /* their names; NULL: not asked for */
     pid_t child;     /* 0: not started, or ended */
     FILE *out, *err; /* of the child; NULL: those of this process */
     double start, seconds;
@@ -101,6 +106,11 @@ static cw_status list_jobs(batch_run *r, cw_error *err)
     return st;
 }
 
+static bool is_stdout(const char *path)
+{
+    return path && strcmp(path, "-") == 0;
+}
+
 /* --- outputs ----------------------------------------------------------------------------- */
 
 /* Writes the output's name with {stem} and {parent} filled in, and '*' for other fields. */
@@ -128,30 +138,54 @@ static char *fill_output(const char *text, const char *input)
     return name;
 }
 
+/* A file that a job writes. */
+typedef struct written {
+    const char *path;
+    const job *by;
+} written;
+
 static int compare_outputs(const void *a, const void *b)
 {
-    const job *x = *(const job *const *)a, *y = *(const job *const *)b;
-    return strcmp(x->output, y->output);
+    return strcmp(((const written *)a)->path, ((const written *)b)->path);
 }
 
 /* Fails when two inputs would write the same file. */
-static cw_status check_outputs(const batch_run *r, const char *text, cw_error *err)
+static cw_status check_outputs(const batch_run *r, int which, const char *text, cw_error *err)
 {
     cw_status st = CW_OK;
-    const job **sorted = calloc(r->count, sizeof *sorted);
+    written *sorted = calloc(r->count, sizeof *sorted);
     if (!sorted)
         return cwi_fail_memory(err);
     for (size_t n = 0; n < r->count; n++)
-        sorted[n] = &r->jobs[n];
+        sorted[n] = (written){which < 0 ? r->jobs[n].output : r->jobs[n].beside[which],
+                              &r->jobs[n]};
     qsort(sorted, r->count, sizeof *sorted, compare_outputs);
     for (size_t n = 1; n < r->count && st == CW_OK; n++)
-        if (strcmp(sorted[n - 1]->output, sorted[n]->output) == 0)
+        if (strcmp(sorted[n - 1].path, sorted[n].path) == 0)
             st =
                 cwi_fail(err, CW_ERR_ARGUMENT,
                          "%s: the output of %s and of %s would be the same file; {stem} stands "
                          "for the name of an input, {parent} for that of its folder",
-                         text, sorted[n - 1]->input, sorted[n]->input);
+                         text, sorted[n - 1].by->input, sorted[n].by->input);
     free(sorted);
+    return st;
+}
+
+/* Names the files beside outputs. */
+static cw_status name_beside(batch_run *r, cw_error *err)
+{
+    cw_status st = CW_OK;
+    for (int b = 0; b < BESIDE && st == CW_OK; b++) {
+        char *const *text = find_field(r, beside[b], CLI_TEXT);
+        if (!text || !*text || is_stdout(*text))
+            continue;
+        for (size_t n = 0; n < r->count; n++) {
+            r->jobs[n].beside[b] = fill_output(*text, r->jobs[n].input);
+            if (!r->jobs[n].beside[b])
+                return cwi_fail_memory(err);
+        }
+        st = check_outputs(r, b, *text, err);
+    }
     return st;
 }
 
@@ -167,12 +201,16 @@ static cw_status name_outputs(batch_run *r, cw_error *err)
         if (!r->jobs[n].output)
             return cwi_fail_memory(err);
     }
-    return check_outputs(r, *text, err);
+    return check_outputs(r, -1, *text, err);
 }
 
+/* Returns true if all files of a job exist. */
 static bool has_output(const job *j)
 {
     glob_t g;
+    for (int b = 0; b < BESIDE; b++)
+        if (j->beside[b] && access(j->beside[b], F_OK) != 0)
+            return false;
     if (access(j->output, F_OK) == 0)
         return true;
     const bool is = glob(j->output, GLOB_NOSORT, NULL, &g) == 0;
@@ -181,11 +219,6 @@ static bool has_output(const job *j)
 }
 
 /* --- processes --------------------------------------------------------------------------- */
-
-static bool is_stdout(const char *path)
-{
-    return path && strcmp(path, "-") == 0;
-}
 
 /* Gives a child its share of threads, unless they were stated, and of memory. */
 static void share_resources(const batch_run *r)
@@ -223,6 +256,9 @@ static void work_as_child(const batch_run *r, const job *j)
         *report = path;
     if (r->lines && prints_report && freopen(path, "w", stdout))
         *prints_report = true;
+    for (int b = 0; b < BESIDE; b++)
+        if (j->beside[b])
+            *(const char **)find_field(r, beside[b], CLI_TEXT) = j->beside[b];
     share_resources(r);
     r->args->inputs[0] = j->input;
     r->args->input_count = 1;
@@ -441,8 +477,11 @@ static cw_status judge_batch(const batch_run *r, cw_error *err)
 
 static void free_batch(batch_run *r)
 {
-    for (size_t n = 0; n < r->count; n++)
+    for (size_t n = 0; n < r->count; n++) {
         free(r->jobs[n].output);
+        for (int b = 0; b < BESIDE; b++)
+            free(r->jobs[n].beside[b]);
+    }
     for (size_t n = 0; n < r->glob_count; n++)
         globfree(&r->globs[n]);
     free(r->globs);
@@ -461,6 +500,8 @@ cw_status cli_batch_run(const cli_command *command, cli_common *args,
         st = list_jobs(&r, err);
     if (st == CW_OK)
         st = name_outputs(&r, err);
+    if (st == CW_OK)
+        st = name_beside(&r, err);
     if (st == CW_OK)
         st = open_lines(&r, err);
     if (st == CW_OK)

@@ -37,3 +37,11 @@ cubewright extract a/x.nrrd --iso 0 -o out/z.stl --json-lines a/x.nrrd || echo "
 # a report that is lost is told beside inputs that failed, and alone
 bad a/x.nrrd --iso 0 -o 'out/{stem}.stl' --json-lines /dev/full -q
 bad b/y.nrrd --iso 0 -o 'out/{stem}.stl' --json-lines /dev/full -q
+# tables are named for each input, and one that is missing is made although the mesh exists
+cubewright make labels/cells --dims 12 --labels 2 --type u8 -o a/cells.nrrd -q
+cp a/cells.nrrd b/more.nrrd
+labels() { cubewright extract a/cells.nrrd b/more.nrrd --labels all -o 'out/{stem}.glb' -q --skip-existing "$@" || echo "exit $?"; }
+labels --table 'out/{stem}.csv'
+rm out/more.csv
+labels --table 'out/{stem}.csv' && ls out/*.csv && cmp out/cells.csv out/more.csv && echo same
+labels --table out/all.csv
