@@ -7,6 +7,7 @@
 #include "core/base/memory.h"
 #include "core/base/status.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -135,7 +136,18 @@ cw_status cli_name_label_file(cli_label_run *r, cw_error *err)
                : name_files(r, &(cw_part){.name = "labels", .label = &label}, 1, err);
 }
 
-enum { STEPS_BYTES = 224 };
+enum { STEPS_BYTES = 320 };
+
+/* Finds the label whose surface moved the farthest when it was simplified; NULL: none was measured. */
+static const cli_label_item *find_worst(const cli_label_run *r)
+{
+    const cli_label_item *worst = NULL;
+    for (size_t n = 0; n < r->item_count; n++)
+        if (!isnan(r->items[n].max_error_mm) &&
+            (!worst || r->items[n].max_error_mm > worst->max_error_mm))
+            worst = &r->items[n];
+    return worst;
+}
 
 /* Describes smoothing and simplification for the line of a file. */
 static void print_steps(const cli_label_run *r, char text[STEPS_BYTES])
@@ -153,7 +165,12 @@ static void print_steps(const cli_label_run *r, char text[STEPS_BYTES])
                       cli_count(r->extracted));
     if (r->extracted && r->error_mm > 0)
         n += snprintf(text + n, STEPS_BYTES - (size_t)n, ", within %.6g mm", r->error_mm);
-    if (r->extracted && r->args->per_label)
+    const cli_label_item *worst = find_worst(r);
+    if (worst)
+        n += snprintf(text + n, STEPS_BYTES - (size_t)n,
+                      ", by up to %.3g mm (label %s, %.40s)", worst->max_error_mm,
+                      cw_label_number(&worst->label, (char[CW_LABEL_NUMBER]){0}), worst->name);
+    if (r->extracted && r->args->per_label && n < STEPS_BYTES)
         snprintf(text + n, STEPS_BYTES - (size_t)n,
                  ", each label by itself: interfaces of neighbours part");
 }
@@ -334,6 +351,9 @@ cw_status cli_write_label_level(cli_label_run *r, size_t n, cw_error *err)
 {
     cw_status st = is_together(r) ? CW_OK : deliver_level(r, n, err);
     for (size_t i = 0; i < r->item_count; i++) {
+        double *errors = r->level_errors[n * r->item_count + i];
+        errors[0] = isnan(r->items[i].max_error_mm) ? 0 : r->items[i].max_error_mm;
+        errors[1] = isnan(r->items[i].rms_error_mm) ? 0 : r->items[i].rms_error_mm;
         r->levels[n * r->item_count + i] = r->items[i].mesh;
         r->items[i].mesh = (cw_mesh){0};
     }
@@ -353,10 +373,13 @@ cw_status cli_write_label_levels(cli_label_run *r, cw_error *err)
     for (size_t i = 0; i < count; i++) { /* the levels of a label follow each other */
         const cli_label_item *item = &r->items[i / r->level_count];
         const size_t level = i % r->level_count;
+        const double *errors = r->level_errors[level * r->item_count + i / r->level_count];
         parts[i] = (cw_part){.mesh = &r->levels[level * r->item_count + i / r->level_count],
                              .name = item->name,
                              .label = &item->label,
-                             .level = level};
+                             .level = level,
+                             .max_error_mm = errors[0],
+                             .rms_error_mm = errors[1]};
     }
     cw_status st = deliver_file(r, together ? 0 : r->level_count, parts, count, 0,
                                 r->item_count, NULL, "; all levels of detail", err);

@@ -56,6 +56,15 @@ static void put_field(FILE *out, const char *text)
     fputc('"', out);
 }
 
+/* Returns true if surfaces were simplified to a number of triangles: their errors are measured. */
+static bool has_errors(const cli_label_run *r)
+{
+    bool has = false;
+    for (size_t n = 0; n < r->item_count; n++)
+        has = has || !isnan(r->items[n].max_error_mm);
+    return has;
+}
+
 static void put_row(FILE *out, const cli_label_run *r, const cli_label_item *item)
 {
     const cw_label_surfaces *s = &item->layer->surfaces;
@@ -83,6 +92,10 @@ static void put_row(FILE *out, const cli_label_run *r, const cli_label_item *ite
                     cw_label_patch_area(s, &s->patches[p]));
             separator = ";";
         }
+    if (has_errors(r) && !isnan(item->max_error_mm))
+        fprintf(out, ",%.6g,%.6g", item->max_error_mm, item->rms_error_mm);
+    else if (has_errors(r))
+        fputs(",,", out);
     const cw_label_change *change = cli_find_label_change(item);
     if (change)
         fprintf(out, ",%zu,%zu,%zu,%zu", change->voxels_before, change->components_removed,
@@ -97,6 +110,8 @@ static void put_table(FILE *out, const void *p)
     fputs("LabelValue,Name,Color_R,Color_G,Color_B,Color_A,layer,voxels,voxel_volume_mm3,"
           "mesh_volume_mm3,area_mm2,triangles,components,neighbour_areas_mm2",
           out);
+    if (has_errors(r))
+        fputs(",max_error_mm,rms_error_mm", out);
     if (cli_cleans_labels(r->args))
         fputs(",voxels_before,components_removed,voxels_removed,voxels_added", out);
     fputc('\n', out);
@@ -162,6 +177,10 @@ static void put_item(cli_json *j, const cli_label_run *r, const cli_label_item *
     cli_json_number(j, "area", item->facts.quality.area_mm2);
     cli_json_count(j, "triangles", item->facts.quality.triangles);
     cli_json_count(j, "components", item->facts.quality.components);
+    if (!isnan(item->max_error_mm)) {
+        cli_json_number(j, "max_error", item->max_error_mm);
+        cli_json_number(j, "rms_error", item->rms_error_mm);
+    }
     const cw_label_change *change = cli_find_label_change(item);
     if (change) {
         cli_json_open(j, "cleaned", '{');

@@ -12,6 +12,7 @@
 
 #include <cubewright/simplify.h>
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -203,6 +204,7 @@ static cw_status list_items(cli_label_run *r, cw_error *err)
             }
             item->layer = &r->layers[n];
             item->voxels = found->voxels;
+            item->max_error_mm = item->rms_error_mm = NAN;
             r->item_count++;
         }
     if (hidden)
@@ -282,6 +284,23 @@ static void tell_stages(cli_label_run *r, const cli_label_item *item)
     free(subject);
 }
 
+/* Measures how far the surface of a label is from the one before it was simplified, both ways. */
+static cw_status measure_item(const cli_label_run *r, cli_label_item *item,
+                              const cw_pipeline_surface *surface, cw_error *err)
+{
+    const cw_mesh_distance_desc desc = {.threads = (int)r->args->input.threads};
+    cw_mesh_comparison c;
+    item->max_error_mm = item->rms_error_mm = NAN;
+    if (!surface->full)
+        return CW_OK;
+    const cw_status st = cw_mesh_compare(surface->mesh, surface->full, &desc, &c, err);
+    if (st != CW_OK)
+        return st;
+    item->max_error_mm = cw_mesh_comparison_max(&c);
+    item->rms_error_mm = cw_mesh_comparison_rms(&c);
+    return CW_OK;
+}
+
 /* Keeps the mesh of a label, and writes a level of detail that is complete. */
 static cw_status take_label(void *user, cw_pipeline_surface *surface,
                             const cw_pipeline_facts *facts, cw_error *err)
@@ -291,6 +310,8 @@ static cw_status take_label(void *user, cw_pipeline_surface *surface,
     item->facts = *facts;
     tell_stages(r, item);
     cw_status st = r->args->check ? hold_item(r, item, err) : CW_OK;
+    if (st == CW_OK)
+        st = measure_item(r, item, surface, err);
     if (!r->args->shared_faces) {
         item->mesh = *surface->mesh;
         *surface->mesh = (cw_mesh){0};
@@ -309,7 +330,8 @@ static cw_status reserve_levels(cli_label_run *r, cw_error *err)
     cw_status st = cli_report_reserve(&r->report, lod->count + 1, err);
     r->report.several = "surfaces";
     r->levels = calloc(lod->count * r->item_count, sizeof *r->levels);
-    return r->levels ? st : cwi_fail_memory(err);
+    r->level_errors = calloc(lod->count * r->item_count, sizeof *r->level_errors);
+    return r->levels && r->level_errors ? st : cwi_fail_memory(err);
 }
 
 /* Simplifies the interfaces, makes the mesh of each label and checks it. */
@@ -409,6 +431,7 @@ static void free_run(cli_label_run *r)
     for (size_t n = 0; n < r->level_count * r->item_count; n++)
         cw_mesh_free(&r->levels[n]);
     free(r->levels);
+    free(r->level_errors);
     free(r->items);
     free(r->layers);
     cli_free_label_choice(&r->choice);

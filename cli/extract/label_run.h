@@ -23,6 +23,7 @@ typedef struct cli_label_item {
     size_t voxels;
     cw_mesh mesh; /* closed, unless open; empty where only interfaces are written */
     cw_pipeline_facts facts;
+    double max_error_mm, rms_error_mm; /* measured from the surface before --simplify N, --lod; NAN: not */
 } cli_label_item;
 
 typedef struct cli_label_run {
@@ -40,6 +41,7 @@ typedef struct cli_label_run {
     size_t triangles; /* of all interfaces */
     size_t extracted; /* of those before they were simplified; 0: they are not */
     cw_mesh *levels;  /* of --lod: item_count meshes a level */
+    double (*level_errors)[2]; /* their largest and rms errors, mm */
     size_t level_count;
     cli_outputs files;
     cli_report report;

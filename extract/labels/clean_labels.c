@@ -294,7 +294,7 @@ static void list_contact(cleaner *c, uint32_t a, uint32_t b, size_t faces)
             const size_t room = c->contact_room ? 2 * c->contact_room : 1024;
             contact *grown = cwi_realloc_array(c->contacts, room, sizeof *grown);
             if (!grown) {
-                c->contact_room = NONE; /* memory is out: it is told afterwards */
+                c->contact_room = NONE; /* memory is out; clean() returns it */
                 return;
             }
             c->contacts = grown;

@@ -1,4 +1,5 @@
 /* Finishes the surfaces of labels: interfaces are simplified together, then each label gets its mesh. */
+#include "core/base/memory.h"
 #include "core/base/status.h"
 #include "extract/pipeline/stages.h"
 
@@ -30,9 +31,10 @@ static double find_ratio(size_t target, size_t all)
     return target > 0 && target < all ? (double)target / (double)all : 0;
 }
 
-static cw_status simplify_layer(const cwi_pipeline *p, cw_stage stage, double ratio,
-                                cw_label_surfaces *surfaces, cw_error *err)
+static cw_status simplify_layer(const cwi_pipeline *p, cw_stage stage, double ratio, size_t n,
+                                cw_error *err)
 {
+    cw_label_surfaces *surfaces = p->labels->layers[n];
     const size_t count = surfaces->mesh.triangle_count;
     cw_label_surfaces simplified;
     if (!count)
@@ -45,7 +47,10 @@ static cw_status simplify_layer(const cwi_pipeline *p, cw_stage stage, double ra
     cw_status st = cw_label_simplify(surfaces, &desc, &simplified, err);
     if (st != CW_OK)
         return st;
-    cw_label_surfaces_free(surfaces);
+    if (p->full_labels && !p->full_labels[n].mesh.triangle_count)
+        p->full_labels[n] = *surfaces;
+    else
+        cw_label_surfaces_free(surfaces);
     *surfaces = simplified;
     return CW_OK;
 }
@@ -62,7 +67,7 @@ static cw_status simplify_together(cwi_pipeline *p, cw_stage stage, size_t targe
     if (l->apart || (p->simplify.error_mm == 0 && ratio == 0))
         return CW_OK;
     for (size_t n = 0; n < l->layer_count && st == CW_OK; n++)
-        st = simplify_layer(p, stage, ratio, l->layers[n], err);
+        st = simplify_layer(p, stage, ratio, n, err);
     p->facts.ran |= 1u << stage;
     if (st == CW_OK && w->end)
         w->end(w->user, stage, before, count_interfaces(l));
@@ -70,7 +75,8 @@ static cw_status simplify_together(cwi_pipeline *p, cw_stage stage, size_t targe
 }
 
 /* Simplifies the mesh of a label by itself. all: triangles of the surfaces of all labels */
-static cw_status simplify_apart(cwi_pipeline *p, size_t all, cw_mesh *mesh, cw_error *err)
+static cw_status simplify_apart(cwi_pipeline *p, size_t all, cw_mesh *mesh, cw_mesh *full,
+                                cw_error *err)
 {
     const cw_simplify_desc desc = {.error_mm = p->simplify.error_mm,
                                    .ratio = find_ratio(p->simplify.triangles, all),
@@ -81,7 +87,7 @@ static cw_status simplify_apart(cwi_pipeline *p, size_t all, cw_mesh *mesh, cw_e
     cw_status st = cw_simplify(mesh, &desc, &simplified, NULL, err);
     if (st != CW_OK)
         return st;
-    cw_mesh_free(mesh);
+    *full = *mesh;
     *mesh = simplified;
     p->facts.ran |= 1u << CW_STAGE_SIMPLIFY;
     return CW_OK;
@@ -91,10 +97,18 @@ static cw_status finish_label(cwi_pipeline *p, cw_pipeline_surface *surface, siz
                               cw_pipeline_sink sink, cw_error *err)
 {
     const cw_pipeline_labels *l = p->labels;
+    const cw_label_surfaces *of_full = p->full_labels ? &p->full_labels[surface->layer] : NULL;
+    cw_mesh full = {0};
     cw_status st = cw_label_mesh(l->layers[surface->layer], surface->label, surface->mesh, err);
     if (st == CW_OK && l->apart)
-        st = simplify_apart(p, all, surface->mesh, err);
-    return st == CW_OK ? cwi_finish_surface(p, surface, sink, err) : st;
+        st = simplify_apart(p, all, surface->mesh, &full, err);
+    else if (st == CW_OK && of_full && of_full->mesh.triangle_count)
+        st = cw_label_mesh(of_full, surface->label, &full, err);
+    surface->full = full.triangle_count ? &full : NULL;
+    if (st == CW_OK)
+        st = cwi_finish_surface(p, surface, sink, err);
+    cw_mesh_free(&full);
+    return st;
 }
 
 /* Makes the mesh of each label, and gives it away. */
@@ -142,10 +156,18 @@ cw_status cw_pipeline_run_labels(const cw_pipeline_labels *labels, const cw_pipe
     CWI_REQUIRE_VERSION(err, facts, 0);
     cwi_pipeline p = {.desc = desc, .labels = labels};
     cw_status st = cwi_begin_pipeline(&p, CW_SOURCE_LABELS, sink, err);
+    if (st == CW_OK && ((desc->simplify && desc->simplify->triangles) || desc->lod_count) && !labels->apart &&
+        !labels->interfaces_only) {
+        p.full_labels = cwi_alloc_zeroed(labels->layer_count + 1, sizeof *p.full_labels);
+        st = p.full_labels ? CW_OK : cwi_fail_memory(err);
+    }
     p.facts.extracted.triangles =
         labels->apart ? count_surfaces(labels) : count_interfaces(labels);
     if (st == CW_OK)
         st = run_levels(&p, sink, err);
+    for (size_t n = 0; n < labels->layer_count && p.full_labels; n++)
+        cw_label_surfaces_free(&p.full_labels[n]);
+    cwi_free(p.full_labels);
     cwi_give_facts(&p, facts);
     return st;
 }

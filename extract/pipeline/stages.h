@@ -35,6 +35,7 @@ typedef struct cwi_pipeline {
     cw_mesh mesh;
     cw_mesh_spool *spool;        /* the surface, of slices; or NULL */
     cw_mesh full;                /* with maps: the surface before it was simplified */
+    cw_label_surfaces *full_labels; /* of each layer, before it was simplified; or NULL */
     cw_mesh *levels;             /* lod_count; NULL: there is one surface */
     cw_image maps[CW_MAP_COUNT]; /* of CW_STAGE_MAPS */
     bool is_simplified;          /* while it was extracted */

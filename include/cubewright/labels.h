@@ -112,7 +112,7 @@ CW_NODISCARD CW_API cw_status cw_label_counts(const cw_volume *volume, uint32_t 
 /* Frees the counts of cw_label_counts(). Harmless on NULL. */
 CW_API void cw_label_counts_free(cw_label_count *counts);
 
-/* What is cleaned in a label map. Zero-initialise the struct and set what you need. */
+/* Options of cleaning a label map. Zero-initialise the struct and set what you need. */
 typedef struct cw_label_clean_desc {
     uint32_t version;    /* 0: the first version of this struct */
     uint32_t background; /* the label of what is no object */

@@ -427,7 +427,7 @@ def find_value(name: str, label: Any, ids: list[int], values: dict[int, int]) ->
 
 @dataclass(frozen=True)
 class LabelChange:
-    """What cleaning changed of a label, in voxels and components."""
+    """A label before and after cleaning: voxels and components."""
 
     voxels_before: int
     voxels: int

@@ -52,7 +52,7 @@ static int find_components(const uint8_t *map, int *component, size_t *sizes)
     return count;
 }
 
-/* What should become of small components, round by round. */
+/* Gives small components away by hand, round by round. */
 static void clean_by_hand(uint8_t *map, size_t least)
 {
     int component[VOXELS];
