@@ -197,7 +197,7 @@ typedef struct cli_input {
          0,                                                                                    \
          CLI_COUNT,                                                                            \
          "N",                                                                                  \
-         "Level of an image in several sizes (OME-Zarr), counted from the finest (0)",         \
+         "Level of an image in several sizes (OME-Zarr, N5), counted from the finest (0)",     \
          CLI_INPUT_ROW(args, level)},                                                          \
         {"points",                                                                             \
          0,                                                                                    \

@@ -19,7 +19,9 @@ enum {
     X(CWI_ZARR_ZSTD, "zstd")                                                                   \
     X(CWI_ZARR_LZ4, "lz4")                                                                     \
     X(CWI_ZARR_BLOSC, "blosc")                                                                 \
-    X(CWI_ZARR_CRC32C, "crc32c")
+    X(CWI_ZARR_CRC32C, "crc32c")                                                               \
+    X(CWI_ZARR_BZ2, "bz2")                                                                     \
+    X(CWI_ZARR_LZ4_FRAMES, "lz4-java")
 
 typedef enum cwi_zarr_codec {
 #define CWI_ZARR_ENUM(constant, name) constant,

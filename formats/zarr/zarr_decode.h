@@ -36,4 +36,8 @@ bool cwi_zarr_blosc_present(void);
 bool cwi_zarr_blosc_decode(const unsigned char *packed, size_t packed_size, void *to,
                            size_t capacity, size_t *got, bool *starved);
 
+/* Decodes what lz4-java writes: frames of a block each. */
+bool cwi_zarr_lz4_frames_decode(const unsigned char *packed, size_t packed_size, void *to,
+                                size_t capacity, size_t *got);
+
 #endif

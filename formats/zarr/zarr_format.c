@@ -1,29 +1,17 @@
 /* The driver of Zarr: its names, its dialect and its reader. */
-#define _GNU_SOURCE /* close */
 #include "formats/zarr/zarr_format.h"
 
 #include "formats/text/label_ome.h"
 #include "formats/zarr/zarr_dialect.h"
 
 #include <stdio.h>
-#include <unistd.h>
 
 #define FILES ".zarray .zgroup .zattrs .zmetadata zarr.json"
 
-static bool has_file(const cwi_input *folder, const char *name)
-{
-    uint64_t size;
-    int fd = -1;
-    if (cwi_input_find_side(folder, name, &fd, &size, NULL) != CW_OK || fd < 0)
-        return false;
-    close(fd);
-    return true;
-}
-
 static bool is_store(const cwi_input *folder)
 {
-    return has_file(folder, "zarr.json") || has_file(folder, ".zarray") ||
-           has_file(folder, ".zgroup");
+    return cwi_zarr_has_file(folder, "zarr.json") || cwi_zarr_has_file(folder, ".zarray") ||
+           cwi_zarr_has_file(folder, ".zgroup");
 }
 
 /* Reads the labels of an image-label, and marks the volume as one. */

@@ -50,14 +50,14 @@ cw_status cwi_zarr_level_path(const cwi_zarr_node *node, size_t level,
 static const struct {
     const char *name;
     double value;
-} lengths[] = {{"angstrom", 1e-7},   {"picometer", 1e-9}, {"nanometer", 1e-6},
-               {"micrometer", 1e-3}, {"micron", 1e-3},    {"millimeter", 1},
-               {"centimeter", 10},   {"decimeter", 100},  {"meter", 1000},
-               {"decameter", 1e4},   {"hectometer", 1e5}, {"kilometer", 1e6},
-               {"inch", 25.4},       {"foot", 304.8},     {"yard", 914.4},
-               {"mile", 1609344},    {"nm", 1e-6},        {"um", 1e-3},
-               {"\xc2\xb5m", 1e-3},  {"\xce\xbcm", 1e-3}, {"mm", 1},
-               {"cm", 10},           {"m", 1000},         {"femtometer", 1e-12}},
+} lengths[] =
+    {{"angstrom", 1e-7},   {"picometer", 1e-9}, {"nanometer", 1e-6}, {"micrometer", 1e-3},
+     {"micron", 1e-3},     {"microns", 1e-3},   {"millimeter", 1},   {"centimeter", 10},
+     {"decimeter", 100},   {"meter", 1000},     {"decameter", 1e4},  {"hectometer", 1e5},
+     {"kilometer", 1e6},   {"inch", 25.4},      {"foot", 304.8},     {"yard", 914.4},
+     {"mile", 1609344},    {"nm", 1e-6},        {"um", 1e-3},        {"\xc2\xb5m", 1e-3},
+     {"\xce\xbcm", 1e-3},  {"mm", 1},           {"cm", 10},          {"m", 1000},
+     {"femtometer", 1e-12}},
   times[] = {{"nanosecond", 1e-9}, {"microsecond", 1e-6}, {"millisecond", 1e-3}, {"second", 1},
              {"minute", 60},       {"hour", 3600},        {"day", 86400},        {"s", 1},
              {"ms", 1e-3}};
