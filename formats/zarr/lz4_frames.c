@@ -10,7 +10,7 @@
 static const char MARK[] = "LZ4Block";
 enum { MARK_BYTES = 8, HEADER_BYTES = MARK_BYTES + 13, METHOD_RAW = 0x10, METHOD_LZ4 = 0x20 };
 
-/* The checksum is xxHash32 (sources.md) with this seed, of which 28 bits are kept. */
+/* The checksum is xxHash32 [Collet2012] with this seed, of which 28 bits are kept. */
 static const uint32_t SEED = 0x9747b28c, KEPT_BITS = 0x0fffffff;
 static const uint32_t PRIMES[] = {0x9e3779b1, 0x85ebca77, 0xc2b2ae3d, 0x27d4eb2f, 0x165667b1};
 

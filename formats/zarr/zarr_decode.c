@@ -31,14 +31,14 @@ cw_status cwi_zarr_codec_check(cwi_zarr_codec codec, cw_error *err)
 
 /* --- sizes -------------------------------------------------------------------------------- */
 
-enum { CHECKSUM_BYTES = 4, SLACK_BYTES = 1024 };
+enum { CHECKSUM_BYTES = 4 };
 
 static size_t add_codec_bytes(cwi_zarr_codec codec, size_t size, bool *exact)
 {
     if (codec == CWI_ZARR_CRC32C)
         return size + CHECKSUM_BYTES;
     *exact = false;
-    return size + size / (codec == CWI_ZARR_LZ4_FRAMES ? 2 : 8) + SLACK_BYTES;
+    return size + size / (codec == CWI_ZARR_LZ4_FRAMES ? 2 : 8) + CWI_ZARR_SLACK_BYTES;
 }
 
 size_t cwi_zarr_packed_max(const cwi_zarr_chain *chain, size_t size, bool *exact)
@@ -57,7 +57,7 @@ static uint64_t find_ratio(cwi_zarr_codec codec)
     switch (codec) {
     case CWI_ZARR_ZLIB:
     case CWI_ZARR_GZIP:
-        return 1032;
+        return CWI_ZARR_DEFLATE_RATIO;
     case CWI_ZARR_LZ4:
     case CWI_ZARR_LZ4_FRAMES:
         return 255;
@@ -187,9 +187,8 @@ static bool check_crc(const unsigned char *packed, size_t packed_size, void *to,
                                         (uint32_t)sum[2] << 16 | (uint32_t)sum[3] << 24);
 }
 
-static cw_status decode_codec(cwi_zarr_codec codec, const unsigned char *packed,
-                              size_t packed_size, void *to, size_t capacity, size_t *got,
-                              cw_error *err)
+cw_status cwi_zarr_unpack(cwi_zarr_codec codec, const unsigned char *packed, size_t packed_size,
+                          void *to, size_t capacity, size_t *got, cw_error *err)
 {
     bool starved = false, fine = false;
     switch (codec) {
@@ -250,8 +249,8 @@ static cw_status decode_stages(const cwi_zarr_chain *chain, size_t size, stages 
         *to = cwi_alloc_array(capacity, 1);
         if (!*to)
             return cwi_fail_memory(err);
-        cw_status st =
-            decode_codec(chain->codecs[n - 1], s->from, s->from_size, *to, capacity, &got, err);
+        cw_status st = cwi_zarr_unpack(chain->codecs[n - 1], s->from, s->from_size, *to,
+                                       capacity, &got, err);
         if (st != CW_OK)
             return st;
         s->from = *to;
@@ -268,7 +267,7 @@ cw_status cwi_zarr_decode(const cwi_zarr_chain *chain, const unsigned char *pack
     size_t got = packed_size;
     cw_status st = decode_stages(chain, size, &s, err);
     if (st == CW_OK && chain->count > 0)
-        st = decode_codec(chain->codecs[0], s.from, s.from_size, to, size, &got, err);
+        st = cwi_zarr_unpack(chain->codecs[0], s.from, s.from_size, to, size, &got, err);
     else if (st == CW_OK && got == size && to != packed)
         memcpy(to, packed, size);
     cwi_free(s.between[0]);

@@ -42,8 +42,8 @@ static cw_status open_level(const cwi_zarr *z, const cwi_zarr_node *image, size_
     if (st == CW_OK)
         st = z->dialect->open_node(node, &z->in, path, err);
     if (st == CW_OK && node->kind != CWI_ZARR_IS_ARRAY) {
-        st = cwi_fail(err, CW_ERR_FORMAT,
-                      "datasets[%zu]: 'path' is '%.200s', where no array is", level, path);
+        st = cwi_fail(err, CW_ERR_FORMAT, "level %zu is '%.200s', where no array is", level,
+                      path);
         cwi_zarr_fail_in(err, st, image, true);
     }
     return st == CW_OK ? cwi_zarr_node_array(z->dialect, node, array, err) : st;
