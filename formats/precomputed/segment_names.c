@@ -3,9 +3,6 @@
 #include "core/volume/label_table.h"
 #include "formats/precomputed/precomputed.h"
 
-#include <errno.h>
-#include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* Returns the names of segments: the values of the property of type "label". */
@@ -21,23 +18,9 @@ static const json_t *find_names(const json_t *inlined)
     return NULL;
 }
 
-/* Reads the number of a segment, a text of decimal digits. Returns false where a label of 32 bits
- * cannot have it. */
-static bool read_id(const json_t *item, uint32_t *id)
-{
-    const char *text = json_string_value(item);
-    char *end;
-    errno = 0;
-    const unsigned long long value = text ? strtoull(text, &end, 10) : UINT64_MAX;
-    *id = (uint32_t)value;
-    return text && strspn(text, "0123456789") == strlen(text) && *text && !errno &&
-           value <= UINT32_MAX;
-}
-
 static cw_status add_names(const json_t *inlined, cwi_zarr_found *found, cw_error *err)
 {
     const json_t *ids = json_object_get(inlined, "ids"), *names = find_names(inlined);
-    size_t wide = 0;
     cw_status st = CW_OK;
     if (!json_is_array(ids))
         return cwi_zarr_fail(err, inlined, "ids", "a list of numbers as texts");
@@ -47,16 +30,15 @@ static cw_status add_names(const json_t *inlined, cwi_zarr_found *found, cw_erro
                         json_array_size(names), json_array_size(ids));
     for (size_t n = 0; st == CW_OK && names && n < json_array_size(ids); n++) {
         const char *name = json_string_value(json_array_get(names, n));
+        const char *id = json_string_value(json_array_get(ids, n));
         cw_label label = {.name = name && *name ? (char *)(uintptr_t)name : NULL};
-        if (!read_id(json_array_get(ids, n), &label.value))
-            wide++;
-        else if (label.name)
+        if (!id || !cw_label_parse(id, &label))
+            return cwi_fail(
+                err, CW_ERR_FORMAT,
+                "'ids' has no number as a text at %zu; one of up to 64 bits was expected", n);
+        if (label.name)
             st = cwi_label_table_append(found->labels, &label, err);
     }
-    if (wide)
-        snprintf(found->note, sizeof found->note,
-                 "%zu names of segments are left out: their numbers are no labels of 32 bits",
-                 wide);
     return st == CW_OK ? cwi_label_table_sort(found->labels, false, err) : st;
 }
 

@@ -16,3 +16,11 @@ echo '{"inline": {"ids": ["49", "50"], "properties": [{"id": "n", "type": "label
 printf '222222222222212222222222222' >map/s/0-3_0-3_0-3
 cubewright extract map --labels all -o '{name}.stl'
 ls ./*.stl
+rm ./*.stl
+for n in $(seq 27); do
+    if [ "$n" = 14 ]; then printf '\001\0\0\0\0\001\0\0'; else printf '2\0\0\0\0\0\0\0'; fi
+done >map/s/0-3_0-3_0-3
+sed -i 's/uint8/uint64/' map/info
+sed -i 's/"49"/"1099511627777"/' map/names/info
+cubewright extract map --labels all -o '{label}_{name}.stl' -q
+ls ./*.stl

@@ -248,11 +248,6 @@ static void labels_in_blocks_are_decoded(void **state)
         assert_true(wide_labels[n] == expected[n] + ((uint64_t)(expected[n] / 10 - 1) << 32));
 }
 
-static void keep_note(void *user, const char *text)
-{
-    snprintf(user, 256, "%s", text);
-}
-
 static void segments_bring_their_names(void **state)
 {
     (void)state;
@@ -261,9 +256,10 @@ static void segments_bring_their_names(void **state)
         "\"99999999999\"], \"properties\": [{\"id\": \"area\", \"type\": \"number\", \"data_type\": "
         "\"float32\", \"values\": [1, 2, 3]}, {\"id\": \"name\", \"type\": \"label\", \"values\": "
         "[\"liver\", \"spleen\", \"far\"]}]}}";
-    char note[256] = "", text[1024];
+    char text[1024];
     cw_label_table table = {0};
-    cw_read_desc desc = {.labels = &table, .note = keep_note, .note_user = note};
+    cw_label_ids ids = {0};
+    cw_read_desc desc = {.labels = &table};
     cw_volume v;
     cw_error err = {0};
     snprintf(
@@ -280,10 +276,10 @@ static void segments_bring_their_names(void **state)
     assert_ok(cw_volume_read(test_path("organs"), &desc, &v, NULL, &err), err);
     assert_int_equal(v.type, CW_U32);
     assert_int_equal(v.known & CW_KNOWN_LABELS, CW_KNOWN_LABELS);
-    assert_int_equal(table.count, 2);
-    assert_string_equal(table.labels[0].name, "spleen");
-    assert_string_equal(table.labels[1].name, "liver");
-    assert_non_null(strstr(note, "1 names of segments are left out"));
+    assert_int_equal(table.count, 3);
+    assert_string_equal(cw_label_find(&table, 0, 3)->name, "spleen");
+    assert_string_equal(cw_label_find(&table, 0, 7)->name, "liver");
+    assert_true(cw_label_find_name(&table, "far")->id == 99999999999);
     cw_label_table_free(&table);
     cw_volume_free(&v);
     zarr_put("organs/s/0-2_0-2_0-2",
@@ -292,6 +288,14 @@ static void segments_bring_their_names(void **state)
              64);
     assert_fails(cw_volume_read(test_path("organs"), &desc, &v, NULL, &err), CW_ERR_FORMAT,
                  "info: 'data_type' is uint64, and a number is 4294967303", err);
+    desc.ids = &ids;
+    assert_ok(cw_volume_read(test_path("organs"), &desc, &v, NULL, &err), err);
+    assert_int_equal(v.type, CW_U32);
+    assert_int_equal(((const uint32_t *)v.data)[0], 3); /* the places of 0, 3, 7 and 2^32 + 7 */
+    assert_int_equal(((const uint32_t *)v.data)[4], 2);
+    cw_label_ids_free(&ids);
+    cw_label_table_free(&table);
+    cw_volume_free(&v);
 }
 
 /* --- scales ------------------------------------------------------------------------------- */
