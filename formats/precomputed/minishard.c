@@ -2,6 +2,7 @@
 #include "core/base/memory.h"
 #include "core/base/status.h"
 #include "formats/precomputed/precomputed.h"
+#include "formats/precomputed/shard_hash.h"
 #include "formats/zarr/zarr_decode.h"
 
 #include <string.h>
@@ -9,43 +10,6 @@
 /* A shard begins with the places of its minishards' tables: first byte and end, behind all of them.
  * Such a table has numbers of chunks, then places, then sizes. */
 enum { WORD = 8, PLACE_BYTES = 2 * WORD, ENTRY_WORDS = 3, ENTRY_BYTES = ENTRY_WORDS * WORD };
-
-static uint64_t low_bits(unsigned count)
-{
-    return count >= 64 ? UINT64_MAX : ((uint64_t)1 << count) - 1;
-}
-
-static uint32_t rotate_left(uint32_t x, int bits)
-{
-    return x << bits | x >> (32 - bits);
-}
-
-static uint32_t mix_word(uint32_t x)
-{
-    x = (x ^ x >> 16) * 0x85ebca6b;
-    x = (x ^ x >> 13) * 0xc2b2ae35;
-    return x ^ x >> 16;
-}
-
-/* Eight bytes are all in the tail of [Appleby2011]; its last two words start equal and stay so. */
-uint64_t cwi_murmur_hash(uint64_t number)
-{
-    enum { BYTES = 8 };
-    const uint32_t low = (uint32_t)number, high = (uint32_t)(number >> 32);
-    uint32_t h1 = rotate_left(low * 0x239b961b, 15) * 0xab0e9789;
-    uint32_t h2 = rotate_left(high * 0xab0e9789, 16) * 0x38b34ae5, rest = BYTES;
-    h1 ^= BYTES;
-    h2 ^= BYTES;
-    h1 += h2 + 2 * rest;
-    h2 += h1;
-    rest += h1;
-    h1 = mix_word(h1);
-    h2 = mix_word(h2);
-    rest = mix_word(rest);
-    h1 += h2 + 2 * rest;
-    h2 += h1;
-    return (uint64_t)h2 << 32 | h1;
-}
 
 /* Interleaves the bits of a place, leaving out those that are 0 for all chunks of the grid. */
 static uint64_t make_morton(const size_t grid[3], const size_t at[3])
@@ -65,7 +29,7 @@ cwi_shard_place cwi_find_shard(const cwi_chunk_storage *s, const size_t grid[3],
     cwi_shard_place place = {.chunk = make_morton(grid, at)};
     const uint64_t shifted = s->preshift_bits < 64 ? place.chunk >> s->preshift_bits : 0;
     const uint64_t hash = s->is_hashed ? cwi_murmur_hash(shifted) : shifted;
-    place.shard_minishard = hash & low_bits(s->shard_bits + s->minishard_bits);
+    place.shard_minishard = hash & cwi_low_bits(s->shard_bits + s->minishard_bits);
     place.shard = place.shard_minishard >> s->minishard_bits;
     return place;
 }
@@ -168,7 +132,7 @@ cw_status cwi_minishard_read(const cwi_zarr *z, cwi_zarr_shard *shard, cw_error 
 {
     const cwi_chunk_storage *s = z->extra;
     const uint64_t base = (uint64_t)PLACE_BYTES << s->minishard_bits;
-    const uint64_t number = shard->key & low_bits(s->minishard_bits);
+    const uint64_t number = shard->key & cwi_low_bits(s->minishard_bits);
     unsigned char place[PLACE_BYTES];
     if (shard->size < base)
         return cwi_fail(err, CW_ERR_FORMAT,

@@ -57,9 +57,6 @@ typedef struct cwi_shard_place {
 cwi_shard_place cwi_find_shard(const cwi_chunk_storage *storage, const size_t grid[3],
                                const size_t at[3]);
 
-/* Returns the low 64 bits of MurmurHash3_x86_128 of a number, low byte first, with seed 0. */
-uint64_t cwi_murmur_hash(uint64_t number);
-
 /* Reads the table of one minishard, whose number is shard->key. It has the number, the first byte and
  * the size of each of shard->count chunks. */
 CW_NODISCARD cw_status cwi_minishard_read(const cwi_zarr *zarr, cwi_zarr_shard *shard,

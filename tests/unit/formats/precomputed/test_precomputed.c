@@ -1,6 +1,7 @@
 /* Tests the reader of Neuroglancer's precomputed volumes on folders that the test writes: numbers,
  * places, scales, shards, compressed labels, and names of segments. */
 #include "formats/precomputed/precomputed.h"
+#include "formats/precomputed/shard_hash.h"
 #include "support/files/reading.h"
 #include "support/files/regions.h"
 #include "support/files/zarr_store.h"
