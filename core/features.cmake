@@ -345,8 +345,8 @@ if(CUBEWRIGHT_LZ4)
   find_library(LZ4_LIBRARY lz4)
 endif()
 add_feature(lz4 OPTION CUBEWRIGHT_LZ4 PACKAGES liblz4-dev
-  ABOUT "VTK image data and Zarr compressed with LZ4"
-  COST "reads no .vti that is compressed with LZ4, nor such Zarr"
+  ABOUT "VTK image data, Zarr and N5 compressed with LZ4"
+  COST "reads no .vti that is compressed with LZ4, nor such Zarr and N5"
   LICENCES "LZ4 (BSD-2-Clause)"
   NEEDS LZ4_INCLUDE=liblz4-dev LZ4_LIBRARY=liblz4-dev
   INCLUDES ${LZ4_INCLUDE} LIBRARIES ${LZ4_LIBRARY}
@@ -363,8 +363,8 @@ if(CUBEWRIGHT_BZIP2)
   find_library(BZIP2_LIBRARY bz2)
 endif()
 add_feature(bzip2 OPTION CUBEWRIGHT_BZIP2 PACKAGES libbz2-dev
-  ABOUT "NRRD volumes compressed with bzip2"
-  COST "reads no NRRD that is compressed with bzip2"
+  ABOUT "NRRD, Zarr and N5 volumes compressed with bzip2"
+  COST "reads no NRRD, Zarr or N5 that is compressed with bzip2"
   LICENCES "bzip2 (bzip2-1.0.6)"
   NEEDS BZIP2_INCLUDE=libbz2-dev BZIP2_LIBRARY=libbz2-dev
   INCLUDES ${BZIP2_INCLUDE} LIBRARIES ${BZIP2_LIBRARY}
@@ -381,8 +381,8 @@ if(CUBEWRIGHT_ZSTD)
   find_library(ZSTD_LIBRARY zstd)
 endif()
 add_feature(zstd OPTION CUBEWRIGHT_ZSTD PACKAGES libzstd-dev
-  ABOUT "Zarr volumes compressed with Zstandard"
-  COST "reads no Zarr that is compressed with Zstandard"
+  ABOUT "Zarr and N5 volumes compressed with Zstandard"
+  COST "reads no Zarr or N5 that is compressed with Zstandard"
   LICENCES "Zstandard (BSD-3-Clause)"
   NEEDS ZSTD_INCLUDE=libzstd-dev ZSTD_LIBRARY=libzstd-dev
   INCLUDES ${ZSTD_INCLUDE} LIBRARIES ${ZSTD_LIBRARY}
@@ -400,8 +400,8 @@ if(CUBEWRIGHT_BLOSC)
   find_library(BLOSC_LIBRARY blosc)
 endif()
 add_feature(blosc OPTION CUBEWRIGHT_BLOSC PACKAGES libblosc-dev MODULE blosc
-  ABOUT "Zarr volumes compressed with Blosc"
-  COST "reads no Zarr that is compressed with Blosc"
+  ABOUT "Zarr and N5 volumes compressed with Blosc"
+  COST "reads no Zarr or N5 that is compressed with Blosc"
   LICENCES "Blosc (BSD-3-Clause)"
   NEEDS BLOSC_INCLUDE=libblosc-dev BLOSC_LIBRARY=libblosc-dev
   INCLUDES ${BLOSC_INCLUDE} LIBRARIES ${BLOSC_LIBRARY}

@@ -12,6 +12,7 @@
 #include "formats/metaimage/metaimage_format.h"
 #include "formats/mgh/mgh_format.h"
 #include "formats/mrc/mrc_format.h"
+#include "formats/n5/n5_format.h"
 #include "formats/neuroglancer/neuroglancer_format.h"
 #include "formats/nifti/nifti_format.h"
 #include "formats/npy/npy_format.h"
@@ -21,6 +22,7 @@
 #include "formats/picture/picture_format.h"
 #include "formats/plot3d/plot3d_format.h"
 #include "formats/ply/ply_format.h"
+#include "formats/precomputed/precomputed_format.h"
 #include "formats/raw/raw_format.h"
 #include "formats/stl/stl_format.h"
 #include "formats/tiff/tiff_format.h"
@@ -34,14 +36,18 @@
 #include <string.h>
 
 static const cwi_format_driver *const drivers[] = {
-    &cwi_format_nrrd,  &cwi_format_nifti,      &cwi_format_metaimage, &cwi_format_vtk,
-    &cwi_format_vtu,   &cwi_format_vtm,        &cwi_format_vti,       &cwi_format_vtkhdf,
-    &cwi_format_mrc,   &cwi_format_inr,        &cwi_format_mgh,       &cwi_format_npy,
-    &cwi_format_dicom, &cwi_format_tiff,       &cwi_format_png,       &cwi_format_bmp,
-    &cwi_format_zarr,  &cwi_format_vdb,        &cwi_format_plot3d,    &cwi_format_raw,
-    &cwi_format_glb,   &cwi_format_gltf,       &cwi_format_stl,       &cwi_format_ply,
-    &cwi_format_obj,   &cwi_format_off,        &cwi_format_3mf,       &cwi_format_vtp,
-    &cwi_format_gifti, &cwi_format_freesurfer, &cwi_format_drc,       &cwi_format_neuroglancer,
+    &cwi_format_nrrd,         &cwi_format_nifti,      &cwi_format_metaimage,
+    &cwi_format_vtk,          &cwi_format_vtu,        &cwi_format_vtm,
+    &cwi_format_vti,          &cwi_format_vtkhdf,     &cwi_format_mrc,
+    &cwi_format_inr,          &cwi_format_mgh,        &cwi_format_npy,
+    &cwi_format_dicom,        &cwi_format_tiff,       &cwi_format_png,
+    &cwi_format_bmp,          &cwi_format_zarr,       &cwi_format_n5,
+    &cwi_format_precomputed,  &cwi_format_vdb,        &cwi_format_plot3d,
+    &cwi_format_raw,          &cwi_format_glb,        &cwi_format_gltf,
+    &cwi_format_stl,          &cwi_format_ply,        &cwi_format_obj,
+    &cwi_format_off,          &cwi_format_3mf,        &cwi_format_vtp,
+    &cwi_format_gifti,        &cwi_format_freesurfer, &cwi_format_drc,
+    &cwi_format_neuroglancer,
 };
 enum { DRIVER_COUNT = sizeof drivers / sizeof *drivers };
 

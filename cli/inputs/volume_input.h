@@ -152,116 +152,116 @@ typedef struct cli_input {
             CLI_INPUT_ROW(args, mask_close)                                                    \
     }
 
-#define CLI_READING_OPTIONS(args)                                                              \
-    CLI_HEADED(CLI_READING),                                                                   \
-        {"reader",                                                                             \
-         0,                                                                                    \
-         CLI_TEXT,                                                                             \
-         "NAME",                                                                               \
-         "Read the file as this format; names as in 'formats' (by content)",                   \
-         CLI_INPUT_ROW(args, reader),                                                          \
-         CLI_VALUES_READER},                                                                   \
-        {"raw",                                                                                \
-         0,                                                                                    \
-         CLI_TEXT,                                                                             \
-         "LAYOUT",                                                                             \
-         "Layout of headerless voxels: dims=64x64x93,type=u16le,offset=0,spacing=1x1x2mm",     \
-         CLI_INPUT_ROW(args, raw)},                                                            \
-        {"spacing",                                                                            \
-         0,                                                                                    \
-         CLI_LENGTHS,                                                                          \
-         "X[,Y,Z]",                                                                            \
-         "Distance between voxels, such as 0.5mm or 1x1x2mm (the file's)",                     \
-         CLI_INPUT_ROW(args, spacing)},                                                        \
-        CLI_CLAIM_OPTIONS("input", "the input", CLI_INPUT_ROW(args, claim)),                   \
-        {"series",                                                                             \
-         0,                                                                                    \
-         CLI_TEXT,                                                                             \
-         "N",                                                                                  \
-         "DICOM series of a folder: its number in 'info', or its UID (the only one)",          \
-         CLI_INPUT_ROW(args, series)},                                                         \
-        {"array",                                                                              \
-         0,                                                                                    \
-         CLI_ARRAY,                                                                            \
-         "NAME[:N|:mag]",                                                                      \
-         "Array to read, of files with several, and its --component, such as velocity:mag "    \
-         "(the file's choice, else the first with one value)",                                 \
-         CLI_INPUT_ROW(args, array)},                                                          \
-        {"grid",                                                                               \
-         0,                                                                                    \
-         CLI_ARRAY,                                                                            \
-         "NAME[:N|:mag]",                                                                      \
-         "OpenVDB grid to read (the first level set, else the first with one value)",          \
-         CLI_INPUT_ROW(args, array)},                                                          \
-        {"level",                                                                              \
-         0,                                                                                    \
-         CLI_COUNT,                                                                            \
-         "N",                                                                                  \
-         "Level of an image in several sizes (OME-Zarr), counted from the finest (0)",         \
-         CLI_INPUT_ROW(args, level)},                                                          \
-        {"points",                                                                             \
-         0,                                                                                    \
-         CLI_TEXT,                                                                             \
-         "FILE",                                                                               \
-         "File with the grid points of a PLOT3D solution",                                     \
-         CLI_INPUT_ROW(args, points),                                                          \
-         CLI_VALUES_FILE},                                                                     \
-        {"gaps",                                                                               \
-         0,                                                                                    \
-         CLI_CHOICE,                                                                           \
-         "stop/interpolate/allow",                                                             \
-         "What to do where slices are missing or uneven (stop)",                               \
-         CLI_INPUT_ROW(args, gaps)},                                                           \
-        {"skip-damaged",                                                                       \
-         0,                                                                                    \
-         CLI_FLAG,                                                                             \
-         NULL,                                                                                 \
-         "Leave out slices whose files are damaged; what they leave are gaps (off)",           \
-         CLI_INPUT_ROW(args, skip_damaged)},                                                   \
-        {"nodata",                                                                             \
-         0,                                                                                    \
-         CLI_NUMBER,                                                                           \
-         "none/V",                                                                             \
-         "Value of voxels that have none, such as -1000; none: all have one (the file's)",     \
-         CLI_INPUT_ROW(args, nodata)},                                                         \
-        {"tilt",                                                                               \
-         0,                                                                                    \
-         CLI_CHOICE,                                                                           \
-         "correct/keep",                                                                       \
-         "Place slices of a tilted gantry where they were, or straight above each other "      \
-         "(correct)",                                                                          \
-         CLI_INPUT_ROW(args, tilt)},                                                           \
-        {"crop",                                                                               \
-         0,                                                                                    \
-         CLI_CROP,                                                                             \
-         "X:X,Y:Y,Z:Z",                                                                        \
-         "Read only these voxels, ends included; with units, those in a box of LPS mm (all)",  \
-         CLI_INPUT_ROW(args, crop)},                                                           \
-        {"component",                                                                          \
-         0,                                                                                    \
-         CLI_COMPONENT,                                                                        \
-         "N/mag",                                                                              \
-         "Component of voxels with several values; mag is the length of their vector (0)",     \
-         CLI_INPUT_ROW(args, array.component)},                                                \
-        {"step",                                                                               \
-         0,                                                                                    \
-         CLI_COUNT,                                                                            \
-         "N",                                                                                  \
-         "Time step to read, counted from 0 (0)",                                              \
-         CLI_INPUT_ROW(args, step)},                                                           \
-        {"allow-external",                                                                     \
-         0,                                                                                    \
-         CLI_FLAG,                                                                             \
-         NULL,                                                                                 \
-         "Follow headers to files outside their folder, and links in a folder (off)",          \
-         CLI_INPUT_ROW(args, allow_external)},                                                 \
-        CLI_SANDBOX_OPTION(args), CLI_HEADED(CLI_LIMITS), CLI_TIME_OPTIONS(args),              \
-        {"max-voxels",                                                                         \
-         0,                                                                                    \
-         CLI_COUNT,                                                                            \
-         "N",                                                                                  \
-         "Stop before reading more voxels than this, such as 500M (2^40)",                     \
-         CLI_INPUT_ROW(args, max_voxels)},                                                     \
+#define CLI_READING_OPTIONS(args)                                                                        \
+    CLI_HEADED(CLI_READING),                                                                             \
+        {"reader",                                                                                       \
+         0,                                                                                              \
+         CLI_TEXT,                                                                                       \
+         "NAME",                                                                                         \
+         "Read the file as this format; names as in 'formats' (by content)",                             \
+         CLI_INPUT_ROW(args, reader),                                                                    \
+         CLI_VALUES_READER},                                                                             \
+        {"raw",                                                                                          \
+         0,                                                                                              \
+         CLI_TEXT,                                                                                       \
+         "LAYOUT",                                                                                       \
+         "Layout of headerless voxels: dims=64x64x93,type=u16le,offset=0,spacing=1x1x2mm",               \
+         CLI_INPUT_ROW(args, raw)},                                                                      \
+        {"spacing",                                                                                      \
+         0,                                                                                              \
+         CLI_LENGTHS,                                                                                    \
+         "X[,Y,Z]",                                                                                      \
+         "Distance between voxels, such as 0.5mm or 1x1x2mm (the file's)",                               \
+         CLI_INPUT_ROW(args, spacing)},                                                                  \
+        CLI_CLAIM_OPTIONS("input", "the input", CLI_INPUT_ROW(args, claim)),                             \
+        {"series",                                                                                       \
+         0,                                                                                              \
+         CLI_TEXT,                                                                                       \
+         "N",                                                                                            \
+         "DICOM series of a folder: its number in 'info', or its UID (the only one)",                    \
+         CLI_INPUT_ROW(args, series)},                                                                   \
+        {"array",                                                                                        \
+         0,                                                                                              \
+         CLI_ARRAY,                                                                                      \
+         "NAME[:N|:mag]",                                                                                \
+         "Array to read, of files with several, and its --component, such as velocity:mag "              \
+         "(the file's choice, else the first with one value)",                                           \
+         CLI_INPUT_ROW(args, array)},                                                                    \
+        {"grid",                                                                                         \
+         0,                                                                                              \
+         CLI_ARRAY,                                                                                      \
+         "NAME[:N|:mag]",                                                                                \
+         "OpenVDB grid to read (the first level set, else the first with one value)",                    \
+         CLI_INPUT_ROW(args, array)},                                                                    \
+        {"level",                                                                                        \
+         0,                                                                                              \
+         CLI_COUNT,                                                                                      \
+         "N",                                                                                            \
+         "Level of an image in several sizes (OME-Zarr, N5, Neuroglancer), counted from the finest (0)", \
+         CLI_INPUT_ROW(args, level)},                                                                    \
+        {"points",                                                                                       \
+         0,                                                                                              \
+         CLI_TEXT,                                                                                       \
+         "FILE",                                                                                         \
+         "File with the grid points of a PLOT3D solution",                                               \
+         CLI_INPUT_ROW(args, points),                                                                    \
+         CLI_VALUES_FILE},                                                                               \
+        {"gaps",                                                                                         \
+         0,                                                                                              \
+         CLI_CHOICE,                                                                                     \
+         "stop/interpolate/allow",                                                                       \
+         "What to do where slices are missing or uneven (stop)",                                         \
+         CLI_INPUT_ROW(args, gaps)},                                                                     \
+        {"skip-damaged",                                                                                 \
+         0,                                                                                              \
+         CLI_FLAG,                                                                                       \
+         NULL,                                                                                           \
+         "Leave out slices whose files are damaged; what they leave are gaps (off)",                     \
+         CLI_INPUT_ROW(args, skip_damaged)},                                                             \
+        {"nodata",                                                                                       \
+         0,                                                                                              \
+         CLI_NUMBER,                                                                                     \
+         "none/V",                                                                                       \
+         "Value of voxels that have none, such as -1000; none: all have one (the file's)",               \
+         CLI_INPUT_ROW(args, nodata)},                                                                   \
+        {"tilt",                                                                                         \
+         0,                                                                                              \
+         CLI_CHOICE,                                                                                     \
+         "correct/keep",                                                                                 \
+         "Place slices of a tilted gantry where they were, or straight above each other "                \
+         "(correct)",                                                                                    \
+         CLI_INPUT_ROW(args, tilt)},                                                                     \
+        {"crop",                                                                                         \
+         0,                                                                                              \
+         CLI_CROP,                                                                                       \
+         "X:X,Y:Y,Z:Z",                                                                                  \
+         "Read only these voxels, ends included; with units, those in a box of LPS mm (all)",            \
+         CLI_INPUT_ROW(args, crop)},                                                                     \
+        {"component",                                                                                    \
+         0,                                                                                              \
+         CLI_COMPONENT,                                                                                  \
+         "N/mag",                                                                                        \
+         "Component of voxels with several values; mag is the length of their vector (0)",               \
+         CLI_INPUT_ROW(args, array.component)},                                                          \
+        {"step",                                                                                         \
+         0,                                                                                              \
+         CLI_COUNT,                                                                                      \
+         "N",                                                                                            \
+         "Time step to read, counted from 0 (0)",                                                        \
+         CLI_INPUT_ROW(args, step)},                                                                     \
+        {"allow-external",                                                                               \
+         0,                                                                                              \
+         CLI_FLAG,                                                                                       \
+         NULL,                                                                                           \
+         "Follow headers to files outside their folder, and links in a folder (off)",                    \
+         CLI_INPUT_ROW(args, allow_external)},                                                           \
+        CLI_SANDBOX_OPTION(args), CLI_HEADED(CLI_LIMITS), CLI_TIME_OPTIONS(args),                        \
+        {"max-voxels",                                                                                   \
+         0,                                                                                              \
+         CLI_COUNT,                                                                                      \
+         "N",                                                                                            \
+         "Stop before reading more voxels than this, such as 500M (2^40)",                               \
+         CLI_INPUT_ROW(args, max_voxels)},                                                               \
         CLI_MEMORY_OPTION(args)
 
 #define CLI_INPUT_OPTIONS(args) CLI_PREPARING_OPTIONS(args), CLI_READING_OPTIONS(args)

@@ -48,7 +48,7 @@ static const cli_option options[] = {
      "Array of the scan, of files with several grids (the file's choice)",
      CLI_INPUT_ROW(voxelize_args, array)},
     {"level", 0, CLI_COUNT, "N",
-     "Level of a scan in several sizes (OME-Zarr), counted from the finest (0)",
+     "Level of a scan in several sizes (OME-Zarr, N5, Neuroglancer), counted from the finest (0)",
      CLI_INPUT_ROW(voxelize_args, level)},
     {"gaps", 0, CLI_CHOICE, "stop/interpolate/allow",
      "What to do where slices are missing or uneven (stop)",

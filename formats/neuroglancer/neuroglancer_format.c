@@ -27,12 +27,15 @@ static cw_status check_request(const cw_write_desc *desc, cw_error *err)
     return CW_OK;
 }
 
-/* Returns true for `info` and, of meshes, for a segment's two files. */
+/* Returns true for `info` and, of meshes, for a segment's two files, or a shard. */
 static bool is_own_file(int folder, const char *name, bool is_inner)
 {
     struct stat info;
     const size_t digits = strspn(name, "0123456789");
-    const bool is_segment = digits && (!name[digits] || strcmp(name + digits, ".index") == 0);
+    const size_t hex = strspn(name, "0123456789abcdef");
+    const bool is_segment =
+        (digits && (!name[digits] || strcmp(name + digits, ".index") == 0)) ||
+        (hex && strcmp(name + hex, ".shard") == 0);
     return (strcmp(name, "info") == 0 || (is_segment && !is_inner)) &&
            fstatat(folder, name, &info, AT_SYMLINK_NOFOLLOW) == 0 && S_ISREG(info.st_mode);
 }

@@ -5,14 +5,10 @@
 #include "core/geometry/lattice_map.h"
 #include "formats/codec/draco_pack.h"
 #include "formats/neuroglancer/neuroglancer_format.h"
-#include "formats/neuroglancer/segment_facts.h"
+#include "formats/neuroglancer/segment_store.h"
 
-#include <inttypes.h>
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
-
-enum { ID_BYTES = 32 };
 
 /* A node of a level, with the bytes of its fragment; 0: it only leads to finer nodes. */
 typedef struct node_entry {
@@ -29,6 +25,7 @@ typedef struct level_nodes {
 typedef struct writer {
     const cwi_parts *parts;
     cwi_mesh_output *out;
+    cwi_segment_store store;
     cwi_lod_grid grid;
     cw_compressed facts;
     uint64_t done; /* triangles, for progress */
@@ -95,7 +92,7 @@ static cw_status make_fragment(const writer *w, const cwi_lod_level *level, size
     return st;
 }
 
-/* Appends the fragment of one node to the segment's file; *bytes is 0 if nothing is left of
+/* Appends the fragment of one node to the segment; *bytes is 0 if nothing is left of
  * it. */
 static cw_status write_fragment(writer *w, const cwi_lod_level *level, size_t first,
                                 size_t count, uint32_t *bytes, cw_error *err)
@@ -112,7 +109,7 @@ static cw_status write_fragment(writer *w, const cwi_lod_level *level, size_t fi
     if (st == CW_OK && packed.size > UINT32_MAX)
         st = cwi_fail(err, CW_ERR_LIMIT, "a fragment has more than 4 GiB");
     if (st == CW_OK && packed.size)
-        st = cwi_outfolder_write(w->out->folder, packed.bytes, packed.size, err);
+        st = cwi_segment_append(&w->store, packed.bytes, packed.size, err);
     *bytes = (uint32_t)packed.size;
     w->facts.fragments += packed.size > 0;
     cwi_draco_packed_free(&packed);
@@ -223,8 +220,9 @@ static unsigned char *put_nodes(unsigned char *to, const level_nodes *nodes)
     return to;
 }
 
-static cw_status write_manifest(writer *w, const char *name, const level_nodes *levels,
-                                size_t count, cw_error *err)
+/* Ends a segment with its manifest. */
+static cw_status write_manifest(writer *w, uint64_t id, const level_nodes *levels, size_t count,
+                                cw_error *err)
 {
     static const float zeros[3] = {0};
     const float edge = (float)(w->grid.step_mm * cwi_lod_steps(&w->grid));
@@ -246,7 +244,7 @@ static cw_status write_manifest(writer *w, const char *name, const level_nodes *
         to = cwi_put_u32(to, (uint32_t)levels[l].count);
     for (size_t l = 0; l < count; l++)
         to = put_nodes(to, &levels[l]);
-    cw_status st = cwi_outfolder_save(w->out->folder, name, bytes, (size_t)(to - bytes), err);
+    cw_status st = cwi_segment_end(&w->store, id, bytes, (size_t)(to - bytes), err);
     cwi_free(bytes);
     return st;
 }
@@ -255,22 +253,17 @@ static cw_status write_manifest(writer *w, const char *name, const level_nodes *
  * out. */
 static cw_status write_segment(writer *w, const cwi_segment *segment, cw_error *err)
 {
-    char name[ID_BYTES];
     size_t count = 0;
     level_nodes *levels = cwi_alloc_zeroed(segment->level_count, sizeof *levels);
     if (!levels)
         return cwi_fail_memory(err);
-    snprintf(name, sizeof name, "%" PRIu64, segment->id);
-    cw_status st = cwi_outfolder_begin(w->out->folder, name, err);
+    cw_status st = cwi_segment_begin(&w->store, segment->id, err);
     for (size_t l = 0; l < segment->level_count && st == CW_OK && count == l; l++) {
         st = write_level(w, &segment->levels[l], l ? &levels[l - 1] : NULL, &levels[l], err);
         count += levels[l].count > 0;
     }
     if (st == CW_OK)
-        st = cwi_outfolder_end(w->out->folder, err);
-    snprintf(name, sizeof name, "%" PRIu64 ".index", segment->id);
-    if (st == CW_OK)
-        st = write_manifest(w, name, levels, count, err);
+        st = write_manifest(w, segment->id, levels, count, err);
     for (size_t l = 0; l < segment->level_count; l++)
         cwi_free(levels[l].items);
     cwi_free(levels);
@@ -281,17 +274,25 @@ cw_status cwi_neuroglancer_write(const cwi_parts *parts, cwi_mesh_output *out, c
 {
     writer w = {.parts = parts, .out = out};
     cwi_segments segments = {0};
+    size_t *order = NULL;
     cw_status st = cwi_segments_list(parts, &segments, err);
     if (st == CW_OK)
         st = cwi_lod_choose(&w.grid, parts, segments.max_levels, out->desc, err);
     w.facts.bits = w.grid.bits;
     w.facts.step_mm = w.grid.step_mm;
+    if (st == CW_OK)
+        st = cwi_segment_store_open(&w.store, out->folder, &segments, parts->triangles, &order,
+                                    err);
     for (size_t n = 0; n < segments.count && st == CW_OK; n++)
-        st = write_segment(&w, &segments.items[n], err);
+        st = write_segment(&w, &segments.items[order[n]], err);
+    if (st == CW_OK)
+        st = cwi_segment_store_finish(&w.store, err);
     if (st == CW_OK)
         st = cwi_segment_properties_write(out->folder, &segments, err);
     if (st == CW_OK)
-        st = cwi_mesh_info_write(out->folder, &w.grid, err);
+        st = cwi_mesh_info_write(out->folder, &w.grid, &w.store.bits, err);
+    cwi_segment_store_close(&w.store);
+    cwi_free(order);
     cwi_segments_free(&segments);
     w.facts.bytes = out->folder ? cwi_outfolder_size(out->folder) : 0;
     if (st == CW_OK && out->desc->compressed)

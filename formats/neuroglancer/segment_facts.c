@@ -165,7 +165,7 @@ static cw_status save_text(cwi_outfolder *folder, const char *name, FILE *out, c
     return st;
 }
 
-static void print_info(FILE *out, const cwi_lod_grid *grid)
+static void print_info(FILE *out, const cwi_lod_grid *grid, const cwi_segment_bits *bits)
 {
     fprintf(out,
             "{\n  \"@type\": \"neuroglancer_multilod_draco\",\n"
@@ -177,18 +177,26 @@ static void print_info(FILE *out, const cwi_lod_grid *grid)
                     c == 3   ? grid->origin[r] * NM_PER_MM
                     : c == r ? NM_PER_MM
                              : 0);
-    fputs("],\n  \"lod_scale_multiplier\": 1,\n  \"segment_properties\": \"" FOLDER "\"\n}\n",
-          out);
+    fputs("],\n  \"lod_scale_multiplier\": 1,\n", out);
+    if (bits->is_sharded)
+        fprintf(out,
+                "  \"sharding\": {\"@type\": \"neuroglancer_uint64_sharded_v1\", "
+                "\"preshift_bits\": 0, \"hash\": \"murmurhash3_x86_128\",\n"
+                "    \"minishard_bits\": %u, \"shard_bits\": %u, \"minishard_index_encoding\": "
+                "\"raw\", \"data_encoding\": \"raw\"},\n",
+                bits->minishard, bits->shard);
+    fputs("  \"segment_properties\": \"" FOLDER "\"\n}\n", out);
 }
 
-cw_status cwi_mesh_info_write(cwi_outfolder *folder, const cwi_lod_grid *grid, cw_error *err)
+cw_status cwi_mesh_info_write(cwi_outfolder *folder, const cwi_lod_grid *grid,
+                              const cwi_segment_bits *bits, cw_error *err)
 {
     char *text = NULL;
     size_t size;
     FILE *out = cwi_text_open(&text, &size);
     void *before = cwi_locale_c();
     if (out)
-        print_info(out, grid);
+        print_info(out, grid, bits);
     cwi_locale_restore(before);
     return save_text(folder, "info", out, &text, err);
 }

@@ -16,6 +16,12 @@ typedef struct cwi_segments {
     size_t count, max_levels; /* the most levels of one */
 } cwi_segments;
 
+/* Bits of the hash of a segment's number that choose its shard, and its minishard in that. */
+typedef struct cwi_segment_bits {
+    bool is_sharded;
+    unsigned shard, minishard;
+} cwi_segment_bits;
+
 /* Groups parts as segments. The id is the label's value; without labels, ids count from 1.
  * Returns CW_ERR_ARGUMENT for the label 0, for one that is there twice, and for parts of which
  * only some have a label; CW_ERR_NO_MEMORY */
@@ -28,7 +34,7 @@ double cwi_mean_edge(const cwi_part *part);
 
 /* Writes the file `info` of the meshes. Returns CW_ERR_OUTPUT, CW_ERR_NO_MEMORY */
 CW_NODISCARD cw_status cwi_mesh_info_write(cwi_outfolder *folder, const cwi_lod_grid *grid,
-                                           cw_error *err);
+                                           const cwi_segment_bits *bits, cw_error *err);
 
 /* Writes names, areas and triangle counts of segments, and volumes if all of them are closed.
  * Returns CW_ERR_OUTPUT, CW_ERR_NO_MEMORY */

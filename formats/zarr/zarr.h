@@ -16,6 +16,7 @@ typedef struct cwi_zarr_desc {
     size_t
         cache_bytes; /* limit of decoded chunks that are kept between calls; default 256 MiB */
     int threads;     /* default: one per processor */
+    const struct cwi_zarr_dialect *dialect; /* default: Zarr itself */
 } cwi_zarr_desc;
 
 /* Opens the array of a path: a folder with .zarray, .zgroup or zarr.json, or such a file.

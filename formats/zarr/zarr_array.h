@@ -19,7 +19,9 @@ enum {
     X(CWI_ZARR_ZSTD, "zstd")                                                                   \
     X(CWI_ZARR_LZ4, "lz4")                                                                     \
     X(CWI_ZARR_BLOSC, "blosc")                                                                 \
-    X(CWI_ZARR_CRC32C, "crc32c")
+    X(CWI_ZARR_CRC32C, "crc32c")                                                               \
+    X(CWI_ZARR_BZ2, "bz2")                                                                     \
+    X(CWI_ZARR_LZ4_FRAMES, "lz4-java")
 
 typedef enum cwi_zarr_codec {
 #define CWI_ZARR_ENUM(constant, name) constant,
@@ -35,11 +37,21 @@ typedef struct cwi_zarr_chain {
     cwi_zarr_codec codecs[CWI_ZARR_CODECS];
 } cwi_zarr_chain;
 
+/* The names that messages have for the metadata of an array. */
+typedef struct cwi_zarr_words {
+    const char *file;       /* "zarr.json" */
+    const char *attributes; /* the file of attributes */
+    const char *type;       /* key of the type of numbers */
+    const char *shape;      /* ... of the sizes */
+    const char *frame;      /* ... of the places of voxels */
+    bool at_root;           /* one file in the store's folder tells of all arrays */
+} cwi_zarr_words;
+
 /* An array. Sizes are in elements, and dimensions in the order of `shape`. */
 typedef struct cwi_zarr_array {
     char
         path[CWI_ZARR_KEY_BYTES]; /* of its folder below the store's; "" for the store itself */
-    int version;                  /* of the format: 2 or 3 */
+    const cwi_zarr_words *words;
     size_t rank;
     size_t shape[CWI_ZARR_RANK];
     cw_type type;        /* of the voxels that are read */

@@ -3,7 +3,7 @@
 #include "core/base/parallel.h"
 #include "core/base/status.h"
 #include "core/base/thread_pool.h"
-#include "formats/zarr/zarr_handle.h"
+#include "formats/zarr/zarr_dialect.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -77,9 +77,9 @@ static cw_status fail_number(const cwi_zarr_array *a, const void *number, cw_err
 {
     cw_error why = {0};
     cw_status st = cwi_stored_fail(a->stored, a->type, number, &why);
-    return cwi_fail(err, st, "%s%s%s: '%s' is %s, and %s", a->path, *a->path ? "/" : "",
-                    a->version == 2 ? ".zarray" : "zarr.json",
-                    a->version == 2 ? "dtype" : "data_type", a->type_name, why.message);
+    const char *folder = a->words->at_root ? "" : a->path;
+    return cwi_fail(err, st, "%s%s%s: '%s' is %s, and %s", folder, *folder ? "/" : "",
+                    a->words->file, a->words->type, a->type_name, why.message);
 }
 
 /* Copies the overlap of a chunk; its numbers all have one value where missing. */
@@ -212,7 +212,7 @@ static cw_status read_chunk(boxing *b, const size_t at[CWI_ROLE_COUNT], cw_error
         if (z->dimensions[r] >= 0)
             chunk_index[z->dimensions[r]] = at[r];
     take_spare(z, scratch);
-    cw_status st = cwi_zarr_load_chunk(z, chunk_index, scratch, &missing, err);
+    cw_status st = z->dialect->load_chunk(z, chunk_index, scratch, &missing, err);
     if (st != CW_OK)
         return st;
     st = copy_overlap(b, &o, missing ? (const char *)&a->fill : *scratch, missing, err);

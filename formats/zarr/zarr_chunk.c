@@ -3,15 +3,14 @@
 #include "core/base/memory.h"
 #include "core/base/status.h"
 #include "formats/zarr/zarr_decode.h"
-#include "formats/zarr/zarr_handle.h"
+#include "formats/zarr/zarr_dialect.h"
 
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
 
-/* Prints the path of a chunk's file below the store. */
-static void print_key(const cwi_zarr_array *a, const size_t at[CWI_ZARR_RANK],
-                      char key[CWI_ZARR_KEY_BYTES])
+void cwi_zarr_print_key(const cwi_zarr_array *a, const size_t at[CWI_ZARR_RANK],
+                        char key[CWI_ZARR_KEY_BYTES])
 {
     const size_t capacity = CWI_ZARR_KEY_BYTES;
     size_t used = (size_t)snprintf(key, capacity, "%s%s%s", a->path, *a->path ? "/" : "",
@@ -23,13 +22,11 @@ static void print_key(const cwi_zarr_array *a, const size_t at[CWI_ZARR_RANK],
     }
 }
 
-/* Reads an encoded chunk at an offset of a file, and decodes it. Nothing is allocated for a
- * chunk that is too short or too long. */
-static cw_status decode_part(const cwi_zarr_array *a, int fd, uint64_t offset, uint64_t size,
-                             void **to, cw_error *err)
+cw_status cwi_zarr_decode_part(const cwi_zarr_array *a, int fd, uint64_t offset, uint64_t size,
+                               size_t bytes, void **to, cw_error *err)
 {
     size_t got = 0;
-    cw_status st = cwi_zarr_packed_check(&a->chain, size, a->chunk_bytes, err);
+    cw_status st = cwi_zarr_packed_check(&a->chain, size, bytes, err);
     if (st != CW_OK)
         return st;
     if (!*to)
@@ -42,11 +39,33 @@ static cw_status decode_part(const cwi_zarr_array *a, int fd, uint64_t offset, u
     if (st == CW_OK && got < size)
         st = cwi_fail(err, CW_ERR_FORMAT, "the file ends inside a chunk");
     if (st == CW_OK)
-        st = cwi_zarr_decode(&a->chain, packed, (size_t)size, *to, a->chunk_bytes,
-                             a->stored_bytes, err);
+        st = cwi_zarr_decode(&a->chain, packed, (size_t)size, *to, bytes, a->stored_bytes, err);
     if (a->chain.count)
         cwi_free(packed);
     return st;
+}
+
+void cwi_zarr_spread(const cwi_zarr_array *a, const size_t sizes[CWI_ZARR_RANK], void *chunk)
+{
+    const size_t fastest = a->order[a->rank - 1];
+    const size_t row = sizes[fastest] * a->stored_bytes;
+    size_t rows = 1, end = a->chunk_bytes;
+    char *bytes = chunk;
+    for (size_t d = 0; d < a->rank; d++)
+        rows *= d == fastest ? 1 : sizes[d];
+    for (size_t n = rows; n > 0; n--) { /* the last first: no row is written over unread ones */
+        size_t rest = n - 1, place = 0, stride = a->inner[fastest];
+        for (size_t k = a->rank - 1; k > 0; k--) {
+            const size_t d = a->order[k - 1];
+            place += rest % sizes[d] * stride;
+            rest /= sizes[d];
+            stride *= a->inner[d];
+        }
+        place *= a->stored_bytes;
+        memmove(bytes + place, bytes + (n - 1) * row, row);
+        memset(bytes + place + row, 0, end - place - row);
+        end = place;
+    }
 }
 
 static cw_status load_file(const cwi_zarr *z, const char *key, void **to, bool *missing,
@@ -57,7 +76,7 @@ static cw_status load_file(const cwi_zarr *z, const char *key, void **to, bool *
     cw_status st = cwi_input_find_side(&z->in, key, &fd, &size, err);
     *missing = st == CW_OK && fd < 0;
     if (st == CW_OK && fd >= 0) {
-        st = decode_part(&z->array, fd, 0, size, to, err);
+        st = cwi_zarr_decode_part(&z->array, fd, 0, size, z->array.chunk_bytes, to, err);
         close(fd);
     }
     return st;
@@ -65,10 +84,11 @@ static cw_status load_file(const cwi_zarr *z, const char *key, void **to, bool *
 
 /* --- shards ------------------------------------------------------------------------------- */
 
-static void close_shard(cwi_zarr_shard *shard)
+static void close_shard(cwi_zarr *z, cwi_zarr_shard *shard)
 {
-    if (shard->key && shard->fd >= 0)
+    if (shard->is_open && shard->fd >= 0)
         close(shard->fd);
+    z->index_bytes -= shard->bytes;
     cwi_free(shard->index);
     *shard = (cwi_zarr_shard){0};
 }
@@ -76,13 +96,14 @@ static void close_shard(cwi_zarr_shard *shard)
 void cwi_zarr_close_shards(cwi_zarr *z)
 {
     for (size_t n = 0; z->shards && n < z->shard_slots; n++)
-        close_shard(&z->shards[n]);
+        close_shard(z, &z->shards[n]);
     cwi_free(z->shards);
     z->shards = NULL;
 }
 
-static cw_status read_index(const cwi_zarr_array *a, cwi_zarr_shard *shard, cw_error *err)
+cw_status cwi_zarr_read_index(const cwi_zarr *z, cwi_zarr_shard *shard, cw_error *err)
 {
+    const cwi_zarr_array *a = &z->array;
     bool exact;
     size_t got = 0;
     const size_t bytes = 16 * a->shard_count;
@@ -102,6 +123,8 @@ static cw_status read_index(const cwi_zarr_array *a, cwi_zarr_shard *shard, cw_e
         st = cwi_fail(err, CW_ERR_FORMAT, "the file ends inside the index of a shard");
     if (st == CW_OK)
         st = cwi_zarr_decode(&a->index_chain, text, packed, shard->index, bytes, 8, err);
+    shard->count = a->shard_count;
+    shard->bytes = bytes;
     cwi_free(text);
     return st;
 }
@@ -112,7 +135,7 @@ static cwi_zarr_shard *find_slot(cwi_zarr *z, uint64_t key)
     cwi_zarr_shard *slot = NULL;
     for (size_t n = 0; n < z->shard_slots; n++) {
         cwi_zarr_shard *s = &z->shards[n];
-        if (s->key == key)
+        if (s->is_open && s->key == key)
             return s;
         if (s->users == 0 && (!slot || s->used < slot->used))
             slot = s;
@@ -120,9 +143,42 @@ static cwi_zarr_shard *find_slot(cwi_zarr *z, uint64_t key)
     return slot;
 }
 
-/* Opens a shard, or finds it open. There is a slot for every thread. */
-static cw_status take_shard(cwi_zarr *z, const char *name, uint64_t key, cwi_zarr_shard **taken,
+/* Closes those unused for longest until their tables fit the limit, but for one. */
+static void limit_tables(cwi_zarr *z, const cwi_zarr_shard *kept)
+{
+    while (z->index_bytes > CWI_ZARR_INDEX_BYTES) {
+        cwi_zarr_shard *oldest = NULL;
+        for (size_t n = 0; n < z->shard_slots; n++) {
+            cwi_zarr_shard *s = &z->shards[n];
+            if (s->is_open && s != kept && !s->users && (!oldest || s->used < oldest->used))
+                oldest = s;
+        }
+        if (!oldest)
+            return;
+        close_shard(z, oldest);
+    }
+}
+
+/* Opens the file of a shard in a slot, and reads its index. A missing file has none. */
+static cw_status open_shard(cwi_zarr *z, const char *name, uint64_t key, cwi_zarr_shard *s,
                             cw_error *err)
+{
+    close_shard(z, s);
+    cw_status st = cwi_input_find_side(&z->in, name, &s->fd, &s->size, err);
+    s->is_open = st == CW_OK;
+    s->key = key;
+    if (st == CW_OK && s->fd >= 0)
+        st = z->dialect->read_index(z, s, err);
+    z->index_bytes += s->bytes;
+    if (st != CW_OK)
+        close_shard(z, s);
+    else
+        limit_tables(z, s);
+    return st;
+}
+
+cw_status cwi_zarr_take_shard(cwi_zarr *z, const char *name, uint64_t key,
+                              cwi_zarr_shard **taken, cw_error *err)
 {
     cw_status st = CW_OK;
     pthread_mutex_lock(&z->lock);
@@ -131,15 +187,8 @@ static cw_status take_shard(cwi_zarr *z, const char *name, uint64_t key, cwi_zar
     cwi_zarr_shard *s = z->shards ? find_slot(z, key) : NULL;
     if (!s)
         st = cwi_fail_memory(err);
-    if (s && s->key != key) {
-        close_shard(s);
-        st = cwi_input_find_side(&z->in, name, &s->fd, &s->size, err);
-        s->key = st == CW_OK ? key : 0;
-        if (st == CW_OK && s->fd >= 0)
-            st = read_index(&z->array, s, err);
-        if (st != CW_OK)
-            close_shard(s);
-    }
+    else if (!s->is_open || s->key != key)
+        st = open_shard(z, name, key, s, err);
     if (st == CW_OK) {
         s->users++;
         s->used = ++z->clock;
@@ -149,7 +198,7 @@ static cw_status take_shard(cwi_zarr *z, const char *name, uint64_t key, cwi_zar
     return st;
 }
 
-static void return_shard(cwi_zarr *z, cwi_zarr_shard *shard)
+void cwi_zarr_return_shard(cwi_zarr *z, cwi_zarr_shard *shard)
 {
     pthread_mutex_lock(&z->lock);
     shard->users--;
@@ -173,7 +222,7 @@ static cw_status read_shard(const cwi_zarr_array *a, const cwi_zarr_shard *s, si
                         "long; the file has %llu",
                         number, (unsigned long long)offset, (unsigned long long)size,
                         (unsigned long long)s->size);
-    cw_status st = decode_part(a, s->fd, offset, size, to, err);
+    cw_status st = cwi_zarr_decode_part(a, s->fd, offset, size, a->chunk_bytes, to, err);
     if (st != CW_OK && st != CW_ERR_NO_MEMORY) {
         char subject[48];
         snprintf(subject, sizeof subject, "inner chunk %zu", number);
@@ -192,7 +241,7 @@ cw_status cwi_zarr_load_chunk(cwi_zarr *z, const size_t at[CWI_ZARR_RANK], void 
     cw_status st;
     for (size_t d = 0; d < a->rank; d++)
         outer[d] = at[d] / (a->chunk[d] / a->inner[d]);
-    print_key(a, outer, key);
+    cwi_zarr_print_key(a, outer, key);
     if (!a->is_sharded) {
         st = load_file(z, key, to, missing, err);
     } else {
@@ -203,10 +252,10 @@ cw_status cwi_zarr_load_chunk(cwi_zarr *z, const size_t at[CWI_ZARR_RANK], void 
             const size_t d = a->shard_order[n], along = a->chunk[d] / a->inner[d];
             number = number * along + at[d] % along;
         }
-        st = take_shard(z, key, shard_number + 1, &shard, err);
+        st = cwi_zarr_take_shard(z, key, shard_number, &shard, err);
         if (st == CW_OK) {
             st = read_shard(a, shard, (size_t)number, to, missing, err);
-            return_shard(z, shard);
+            cwi_zarr_return_shard(z, shard);
         }
     }
     return st == CW_OK ? CW_OK : cwi_fail_in(err, st, key);

@@ -5,6 +5,7 @@
 #include "core/base/status.h"
 #include "formats/bytes/block_reader.h"
 #include "formats/bytes/byte_order.h"
+#include "formats/bytes/bzip2.h"
 #include "formats/bytes/isal.h"
 
 #include <string.h>
@@ -17,25 +18,27 @@ static const char *const codec_names[CWI_ZARR_CODEC_COUNT] = {
 
 cw_status cwi_zarr_codec_check(cwi_zarr_codec codec, cw_error *err)
 {
+    const bool needs_lz4 = codec == CWI_ZARR_LZ4 || codec == CWI_ZARR_LZ4_FRAMES;
     const bool is_missing = (codec == CWI_ZARR_ZSTD && !cwi_zarr_zstd_present()) ||
                             (codec == CWI_ZARR_BLOSC && !cwi_zarr_blosc_present()) ||
-                            (codec == CWI_ZARR_LZ4 && !cwi_lz4_present());
+                            (codec == CWI_ZARR_BZ2 && !cwi_bzip2_present()) ||
+                            (needs_lz4 && !cwi_lz4_present());
     return is_missing ? cwi_fail(err, CW_ERR_UNSUPPORTED,
                                  "compressed with %s, which this build lacks (lib%s-dev)",
-                                 codec_names[codec], codec_names[codec])
+                                 codec_names[codec], needs_lz4 ? "lz4" : codec_names[codec])
                       : CW_OK;
 }
 
 /* --- sizes -------------------------------------------------------------------------------- */
 
-enum { CHECKSUM_BYTES = 4, SLACK_BYTES = 1024 };
+enum { CHECKSUM_BYTES = 4 };
 
 static size_t add_codec_bytes(cwi_zarr_codec codec, size_t size, bool *exact)
 {
     if (codec == CWI_ZARR_CRC32C)
         return size + CHECKSUM_BYTES;
     *exact = false;
-    return size + size / 8 + SLACK_BYTES;
+    return size + size / (codec == CWI_ZARR_LZ4_FRAMES ? 2 : 8) + CWI_ZARR_SLACK_BYTES;
 }
 
 size_t cwi_zarr_packed_max(const cwi_zarr_chain *chain, size_t size, bool *exact)
@@ -47,15 +50,19 @@ size_t cwi_zarr_packed_max(const cwi_zarr_chain *chain, size_t size, bool *exact
 }
 
 /* Returns the bytes that one packed byte can stand for at most. Deflate packs 1032, LZ4 255. A
- * block of Zstandard packs 128 KiB into 4 bytes, and one of Blosc may be such blocks. */
+ * block of Zstandard packs 128 KiB into 4 bytes, and one of Blosc may be such blocks. One of bzip2
+ * holds runs of runs. */
 static uint64_t find_ratio(cwi_zarr_codec codec)
 {
     switch (codec) {
     case CWI_ZARR_ZLIB:
     case CWI_ZARR_GZIP:
-        return 1032;
+        return CWI_ZARR_DEFLATE_RATIO;
     case CWI_ZARR_LZ4:
+    case CWI_ZARR_LZ4_FRAMES:
         return 255;
+    case CWI_ZARR_BZ2:
+        return CWI_BZIP2_BLOCK / CWI_BZIP2_PACKED;
     case CWI_ZARR_ZSTD:
     case CWI_ZARR_BLOSC:
         return 32768;
@@ -78,8 +85,7 @@ cw_status cwi_zarr_packed_check(const cwi_zarr_chain *chain, uint64_t packed, si
                         (unsigned long long)packed, size, max);
     uint64_t max_size = packed;
     for (size_t n = chain->count; n > 0 && max_size < size; n--)
-        max_size = max_size > UINT64_MAX / 65536 ? max_size
-                                                 : max_size * find_ratio(chain->codecs[n - 1]);
+        max_size = max_size >> 40 ? max_size : max_size * find_ratio(chain->codecs[n - 1]);
     if (max_size < size)
         return cwi_fail(err, CW_ERR_FORMAT,
                         "a chunk has %llu bytes, too few for its %zu bytes of numbers",
@@ -147,6 +153,28 @@ static bool decode_lz4(const unsigned char *packed, size_t packed_size, void *to
     return *got <= capacity && cwi_lz4_decode(packed + 4, packed_size - 4, to, *got);
 }
 
+/* Decompresses streams of bzip2 in a row. */
+static bool decode_bz2(const unsigned char *packed, size_t packed_size, void *to,
+                       size_t capacity, size_t *got, bool *starved)
+{
+    z_stream z = {.next_in = packed,
+                  .avail_in = (uInt)packed_size,
+                  .next_out = to,
+                  .avail_out = (uInt)capacity};
+    void *state;
+    int code = cwi_bzip2_open(&state) ? Z_OK : Z_MEM_ERROR;
+    while (code == Z_OK || (code == Z_STREAM_END && z.avail_in > 0)) {
+        const uInt in = z.avail_in, out = z.avail_out;
+        code = cwi_bzip2_inflate(state, &z);
+        if (code == Z_OK && in == z.avail_in && out == z.avail_out)
+            break;
+    }
+    cwi_bzip2_close(state);
+    *starved = code == Z_MEM_ERROR;
+    *got = capacity - z.avail_out;
+    return code == Z_STREAM_END;
+}
+
 static bool check_crc(const unsigned char *packed, size_t packed_size, void *to,
                       size_t capacity, size_t *got)
 {
@@ -159,9 +187,8 @@ static bool check_crc(const unsigned char *packed, size_t packed_size, void *to,
                                         (uint32_t)sum[2] << 16 | (uint32_t)sum[3] << 24);
 }
 
-static cw_status decode_codec(cwi_zarr_codec codec, const unsigned char *packed,
-                              size_t packed_size, void *to, size_t capacity, size_t *got,
-                              cw_error *err)
+cw_status cwi_zarr_unpack(cwi_zarr_codec codec, const unsigned char *packed, size_t packed_size,
+                          void *to, size_t capacity, size_t *got, cw_error *err)
 {
     bool starved = false, fine = false;
     switch (codec) {
@@ -177,6 +204,12 @@ static cw_status decode_codec(cwi_zarr_codec codec, const unsigned char *packed,
         break;
     case CWI_ZARR_LZ4:
         fine = decode_lz4(packed, packed_size, to, capacity, got);
+        break;
+    case CWI_ZARR_LZ4_FRAMES:
+        fine = cwi_zarr_lz4_frames_decode(packed, packed_size, to, capacity, got);
+        break;
+    case CWI_ZARR_BZ2:
+        fine = decode_bz2(packed, packed_size, to, capacity, got, &starved);
         break;
     default:
         fine = check_crc(packed, packed_size, to, capacity, got);
@@ -216,8 +249,8 @@ static cw_status decode_stages(const cwi_zarr_chain *chain, size_t size, stages 
         *to = cwi_alloc_array(capacity, 1);
         if (!*to)
             return cwi_fail_memory(err);
-        cw_status st =
-            decode_codec(chain->codecs[n - 1], s->from, s->from_size, *to, capacity, &got, err);
+        cw_status st = cwi_zarr_unpack(chain->codecs[n - 1], s->from, s->from_size, *to,
+                                       capacity, &got, err);
         if (st != CW_OK)
             return st;
         s->from = *to;
@@ -234,7 +267,7 @@ cw_status cwi_zarr_decode(const cwi_zarr_chain *chain, const unsigned char *pack
     size_t got = packed_size;
     cw_status st = decode_stages(chain, size, &s, err);
     if (st == CW_OK && chain->count > 0)
-        st = decode_codec(chain->codecs[0], s.from, s.from_size, to, size, &got, err);
+        st = cwi_zarr_unpack(chain->codecs[0], s.from, s.from_size, to, size, &got, err);
     else if (st == CW_OK && got == size && to != packed)
         memcpy(to, packed, size);
     cwi_free(s.between[0]);

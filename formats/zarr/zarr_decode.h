@@ -4,6 +4,10 @@
 
 #include "formats/zarr/zarr_array.h"
 
+/* Bytes that a byte of deflated data stands for at most, and those that any encoder may add to what it
+ * packs, beside an eighth. */
+enum { CWI_ZARR_DEFLATE_RATIO = 1032, CWI_ZARR_SLACK_BYTES = 1024 };
+
 /* Returns CW_ERR_UNSUPPORTED for a codec that is not in this build, with its package. */
 CW_NODISCARD cw_status cwi_zarr_codec_check(cwi_zarr_codec codec, cw_error *err);
 
@@ -24,6 +28,11 @@ CW_NODISCARD cw_status cwi_zarr_decode(const cwi_zarr_chain *chain, const unsign
                                        size_t packed_size, void *to, size_t size, size_t number,
                                        cw_error *err);
 
+/* Decodes one codec to at most `capacity` bytes; *got is their number. As cwi_zarr_decode(). */
+CW_NODISCARD cw_status cwi_zarr_unpack(cwi_zarr_codec codec, const unsigned char *packed,
+                                       size_t packed_size, void *to, size_t capacity,
+                                       size_t *got, cw_error *err);
+
 /* Computes the CRC-32C (Castagnoli) of bytes. */
 uint32_t cwi_crc32c(const void *bytes, size_t size);
 
@@ -35,5 +44,9 @@ bool cwi_zarr_zstd_decode(const unsigned char *packed, size_t packed_size, void 
 bool cwi_zarr_blosc_present(void);
 bool cwi_zarr_blosc_decode(const unsigned char *packed, size_t packed_size, void *to,
                            size_t capacity, size_t *got, bool *starved);
+
+/* Decodes what lz4-java writes: frames of a block each. */
+bool cwi_zarr_lz4_frames_decode(const unsigned char *packed, size_t packed_size, void *to,
+                                size_t capacity, size_t *got);
 
 #endif

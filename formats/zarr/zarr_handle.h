@@ -12,12 +12,15 @@ enum { CWI_ZARR_SHARDS = 64, CWI_ZARR_INDEX_BYTES = 64 << 20 };
 
 /* An open shard. */
 typedef struct cwi_zarr_shard {
-    uint64_t key;   /* its number plus 1; 0: none */
+    bool is_open;
+    uint64_t key;   /* its number */
     uint64_t used;  /* time of the last use */
     unsigned users; /* threads that read from it */
     int fd;         /* -1: the file is missing */
     uint64_t size;
-    uint64_t *index; /* shard_count x offset and bytes */
+    uint64_t *index; /* count x offset and bytes; dialects may have other tables */
+    size_t count;    /* of its entries */
+    size_t bytes;    /* of its table */
 } cwi_zarr_shard;
 
 /* A decoded chunk that is kept. */
@@ -28,7 +31,11 @@ typedef struct cwi_zarr_slot {
     void *bytes;
 } cwi_zarr_slot;
 
+struct cwi_zarr_dialect;
+
 struct cwi_zarr {
+    const struct cwi_zarr_dialect *dialect;
+    void *extra; /* what its dialect keeps of the array; may be NULL */
     char *path;
     cwi_input in;
     cwi_zarr_array array;
@@ -43,6 +50,7 @@ struct cwi_zarr {
     uint64_t call, decoded, clock;
     cwi_zarr_shard *shards;
     size_t shard_slots;
+    size_t index_bytes;   /* of the tables of all open shards */
     cwi_zarr_slot *slots; /* a chunk has its place at its number modulo slot_count */
     size_t slot_count;
     void **spare; /* memory of chunks that are no longer kept, for the next ones */
@@ -74,6 +82,34 @@ CW_NODISCARD cw_status cwi_zarr_set_frame(cwi_zarr *zarr, const struct cwi_zarr_
  * Reentrant. */
 CW_NODISCARD cw_status cwi_zarr_load_chunk(cwi_zarr *zarr, const size_t at[CWI_ZARR_RANK],
                                            void **to, bool *missing, cw_error *err);
+
+/* --- parts that dialects share ---------------------------------------------------------------- */
+
+/* Prints the path of a chunk's file below the store. */
+void cwi_zarr_print_key(const cwi_zarr_array *array, const size_t at[CWI_ZARR_RANK],
+                        char key[CWI_ZARR_KEY_BYTES]);
+
+/* Reads an encoded chunk at an offset of a file, and decodes it to `bytes` bytes, at most
+ * array->chunk_bytes. Nothing is allocated for a chunk that is too short or too long; *to gets
+ * memory for a whole chunk where it is NULL. */
+CW_NODISCARD cw_status cwi_zarr_decode_part(const cwi_zarr_array *array, int fd,
+                                            uint64_t offset, uint64_t size, size_t bytes,
+                                            void **to, cw_error *err);
+
+/* Moves the numbers of a chunk that was cut off at `sizes`, packed, to their places in a whole
+ * chunk. The others become 0. */
+void cwi_zarr_spread(const cwi_zarr_array *array, const size_t sizes[CWI_ZARR_RANK],
+                     void *chunk);
+
+/* Opens a shard by the name of its file, or finds it open, and reads its index by the dialect. There
+ * is a slot for every thread. Return it in any case but a failure. */
+CW_NODISCARD cw_status cwi_zarr_take_shard(cwi_zarr *zarr, const char *name, uint64_t key,
+                                           cwi_zarr_shard **taken, cw_error *err);
+void cwi_zarr_return_shard(cwi_zarr *zarr, cwi_zarr_shard *shard);
+
+/* Reads the index of a shard of Zarr 3. */
+CW_NODISCARD cw_status cwi_zarr_read_index(const cwi_zarr *zarr, cwi_zarr_shard *shard,
+                                           cw_error *err);
 
 /* Closes all shards. */
 void cwi_zarr_close_shards(cwi_zarr *zarr);

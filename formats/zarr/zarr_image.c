@@ -50,19 +50,19 @@ cw_status cwi_zarr_level_path(const cwi_zarr_node *node, size_t level,
 static const struct {
     const char *name;
     double value;
-} lengths[] = {{"angstrom", 1e-7},   {"picometer", 1e-9}, {"nanometer", 1e-6},
-               {"micrometer", 1e-3}, {"micron", 1e-3},    {"millimeter", 1},
-               {"centimeter", 10},   {"decimeter", 100},  {"meter", 1000},
-               {"decameter", 1e4},   {"hectometer", 1e5}, {"kilometer", 1e6},
-               {"inch", 25.4},       {"foot", 304.8},     {"yard", 914.4},
-               {"mile", 1609344},    {"nm", 1e-6},        {"um", 1e-3},
-               {"\xc2\xb5m", 1e-3},  {"\xce\xbcm", 1e-3}, {"mm", 1},
-               {"cm", 10},           {"m", 1000},         {"femtometer", 1e-12}},
+} lengths[] =
+    {{"angstrom", 1e-7},   {"picometer", 1e-9}, {"nanometer", 1e-6}, {"micrometer", 1e-3},
+     {"micron", 1e-3},     {"microns", 1e-3},   {"millimeter", 1},   {"centimeter", 10},
+     {"decimeter", 100},   {"meter", 1000},     {"decameter", 1e4},  {"hectometer", 1e5},
+     {"kilometer", 1e6},   {"inch", 25.4},      {"foot", 304.8},     {"yard", 914.4},
+     {"mile", 1609344},    {"nm", 1e-6},        {"um", 1e-3},        {"\xc2\xb5m", 1e-3},
+     {"\xce\xbcm", 1e-3},  {"mm", 1},           {"cm", 10},          {"m", 1000},
+     {"femtometer", 1e-12}},
   times[] = {{"nanosecond", 1e-9}, {"microsecond", 1e-6}, {"millisecond", 1e-3}, {"second", 1},
              {"minute", 60},       {"hour", 3600},        {"day", 86400},        {"s", 1},
              {"ms", 1e-3}};
 
-static void read_unit(const char *text, cwi_zarr_axis *axis)
+void cwi_zarr_read_unit(const char *text, cwi_zarr_axis *axis)
 {
     axis->unit = 1;
     for (size_t n = 0; text && axis->role <= CWI_AXIS_Z && n < sizeof lengths / sizeof *lengths;
@@ -112,9 +112,8 @@ static cwi_role find_typed_role(const char *name, const char *type)
     return role;
 }
 
-/* Checks that no role occurs twice, and that all other axes have one entry. */
-static cw_status check_roles(const cwi_zarr_frame *frame, const cwi_zarr_array *array,
-                             cw_error *err)
+cw_status cwi_zarr_check_roles(const cwi_zarr_frame *frame, const cwi_zarr_array *array,
+                               cw_error *err)
 {
     unsigned taken = 0;
     for (size_t d = 0; d < frame->rank; d++) {
@@ -154,14 +153,14 @@ static cw_status read_axes(const json_t *list, const cwi_zarr_array *array,
             return cwi_fail(err, CW_ERR_FORMAT, "'axes[%zu]' has no name", d);
         snprintf(axis->name, sizeof axis->name, "%s", name);
         axis->role = find_typed_role(name, cwi_zarr_text(item, "type"));
-        read_unit(cwi_zarr_text(item, "unit"), axis);
+        cwi_zarr_read_unit(cwi_zarr_text(item, "unit"), axis);
     }
-    return check_roles(frame, array, err);
+    return cwi_zarr_check_roles(frame, array, err);
 }
 
 /* --- frames --------------------------------------------------------------------------------- */
 
-static void start_frame(const cwi_zarr_array *array, cwi_zarr_frame *frame)
+void cwi_zarr_start_frame(const cwi_zarr_array *array, cwi_zarr_frame *frame)
 {
     *frame = (cwi_zarr_frame){.rank = array->rank};
     for (size_t d = 0; d < array->rank; d++) {
@@ -190,25 +189,26 @@ static void place_roles(const cwi_zarr_array *array, cwi_zarr_frame *frame)
 void cwi_zarr_plain_frame(const cwi_zarr_array *array, cwi_zarr_frame *frame)
 {
     bool known = array->has_names;
-    start_frame(array, frame);
+    cwi_zarr_start_frame(array, frame);
     for (size_t d = 0; known && d < array->rank; d++) {
         snprintf(frame->axes[d].name, sizeof frame->axes[d].name, "%s", array->names[d]);
         known =
             cwi_zarr_name_role(array->names[d], &frame->axes[d].role) || array->shape[d] == 1;
     }
-    if (!known || check_roles(frame, array, NULL) != CW_OK)
+    if (!known || cwi_zarr_check_roles(frame, array, NULL) != CW_OK)
         place_roles(array, frame);
 }
 
 cw_status cwi_zarr_level_frame(const cwi_zarr_node *node, size_t level,
-                               const cwi_zarr_array *array, cwi_zarr_frame *frame,
-                               cw_error *err)
+                               const cwi_zarr_node *level_node, const cwi_zarr_array *array,
+                               cwi_zarr_frame *frame, cw_error *err)
 {
+    (void)level_node; /* the image tells all */
     const json_t *multiscale = find_multiscale(node), *axes = find_axes(multiscale);
     const json_t *dataset = find_level(node, level);
     cw_status st = CW_OK;
     char subject[48];
-    start_frame(array, frame);
+    cwi_zarr_start_frame(array, frame);
     if (axes)
         st = read_axes(axes, array, frame, err);
     else

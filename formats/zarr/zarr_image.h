@@ -32,8 +32,20 @@ CW_NODISCARD cw_status cwi_zarr_level_path(const cwi_zarr_node *node, size_t lev
 
 /* Reads the axes of an image and the frame of a level, whose array is known. */
 CW_NODISCARD cw_status cwi_zarr_level_frame(const cwi_zarr_node *node, size_t level,
+                                            const cwi_zarr_node *level_node,
                                             const cwi_zarr_array *array, cwi_zarr_frame *frame,
                                             cw_error *err);
+
+/* Makes a frame of units whose axes have no names or roles. */
+void cwi_zarr_start_frame(const cwi_zarr_array *array, cwi_zarr_frame *frame);
+
+/* Sets the unit of an axis, whose role is set, from its name, such as "nm"; names that are not known
+ * leave the axis without one. */
+void cwi_zarr_read_unit(const char *text, cwi_zarr_axis *axis);
+
+/* Checks that no role occurs twice, and that all other axes have one entry. CW_ERR_FORMAT */
+CW_NODISCARD cw_status cwi_zarr_check_roles(const cwi_zarr_frame *frame,
+                                            const cwi_zarr_array *array, cw_error *err);
 
 /* Makes the frame of an array by itself, from the names of its dimensions. Without names the
  * last three are z, y, x, and those before them components and steps. */

@@ -74,6 +74,16 @@ void cwi_zarr_json_close(cwi_zarr_json *json)
     *json = (cwi_zarr_json){0};
 }
 
+bool cwi_zarr_has_file(const cwi_input *in, const char *name)
+{
+    uint64_t size;
+    int fd = -1;
+    if (cwi_input_find_side(in, name, &fd, &size, NULL) != CW_OK || fd < 0)
+        return false;
+    close(fd);
+    return true;
+}
+
 const char *cwi_zarr_text(const json_t *object, const char *key)
 {
     return json_string_value(json_object_get(object, key));

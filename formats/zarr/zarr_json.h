@@ -20,6 +20,9 @@ CW_NODISCARD cw_status cwi_zarr_json_open(cwi_zarr_json *json, const cwi_input *
                                           const char *name, cw_error *err);
 void cwi_zarr_json_close(cwi_zarr_json *json);
 
+/* Returns true if the store's folder has a file. */
+bool cwi_zarr_has_file(const cwi_input *in, const char *name);
+
 /* Returns an item's text; NULL when it is missing or no text. */
 const char *cwi_zarr_text(const json_t *object, const char *key);
 

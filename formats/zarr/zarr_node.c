@@ -1,6 +1,6 @@
 /* Opens the nodes of a Zarr store, and lists those below a group. */
 #define _GNU_SOURCE /* O_PATH, DT_DIR */
-#include "formats/zarr/zarr_node.h"
+#include "formats/zarr/zarr_dialect.h"
 
 #include "core/base/memory.h"
 #include "core/base/status.h"
@@ -15,6 +15,18 @@
 #include <unistd.h>
 
 enum { MAX_DEPTH = 8, MAX_FOLDERS = 4096 };
+
+static const cwi_zarr_words array_words_v2 = {.file = ".zarray",
+                                              .attributes = ".zattrs",
+                                              .type = "dtype",
+                                              .shape = "shape",
+                                              .frame = "coordinateTransformations"},
+                            group_words_v2 = {.file = ".zgroup", .attributes = ".zattrs"},
+                            words_v3 = {.file = "zarr.json",
+                                        .attributes = "zarr.json",
+                                        .type = "data_type",
+                                        .shape = "shape",
+                                        .frame = "coordinateTransformations"};
 
 cw_status cwi_zarr_join(const char *path, const char *name, char joined[CWI_ZARR_KEY_BYTES],
                         cw_error *err)
@@ -31,9 +43,8 @@ cw_status cwi_zarr_join(const char *path, const char *name, char joined[CWI_ZARR
                           length, CWI_ZARR_KEY_BYTES / 2);
 }
 
-/* Opens a metadata file of a node. */
-static cw_status open_json(const cwi_zarr_node *node, const cwi_input *in, const char *name,
-                           cwi_zarr_json *json, cw_error *err)
+cw_status cwi_zarr_node_json(const cwi_zarr_node *node, const cwi_input *in, const char *name,
+                             cwi_zarr_json *json, cw_error *err)
 {
     char path[CWI_ZARR_KEY_BYTES];
     cw_status st = cwi_zarr_join(node->path, name, path, err);
@@ -43,7 +54,7 @@ static cw_status open_json(const cwi_zarr_node *node, const cwi_input *in, const
 static cw_status read_node_type(cwi_zarr_node *node, cw_error *err)
 {
     const char *type = cwi_zarr_text(node->meta.root, "node_type");
-    node->version = 3;
+    node->words = &words_v3;
     node->attrs = json_object_get(node->meta.root, "attributes");
     if (type && strcmp(type, "array") == 0)
         node->kind = CWI_ZARR_IS_ARRAY;
@@ -58,15 +69,16 @@ static cw_status read_node_type(cwi_zarr_node *node, cw_error *err)
 
 static cw_status open_v2(cwi_zarr_node *node, const cwi_input *in, cw_error *err)
 {
-    node->version = 2;
-    cw_status st = open_json(node, in, ".zarray", &node->meta, err);
+    node->words = &array_words_v2;
+    cw_status st = cwi_zarr_node_json(node, in, ".zarray", &node->meta, err);
     node->kind = node->meta.root ? CWI_ZARR_IS_ARRAY : CWI_ZARR_NOTHING;
     if (st == CW_OK && !node->meta.root) {
-        st = open_json(node, in, ".zgroup", &node->meta, err);
+        st = cwi_zarr_node_json(node, in, ".zgroup", &node->meta, err);
         node->kind = node->meta.root ? CWI_ZARR_IS_GROUP : CWI_ZARR_NOTHING;
+        node->words = &group_words_v2;
     }
     if (st == CW_OK && node->kind != CWI_ZARR_NOTHING)
-        st = open_json(node, in, ".zattrs", &node->attributes, err);
+        st = cwi_zarr_node_json(node, in, ".zattrs", &node->attributes, err);
     node->attrs = node->attributes.root;
     return st;
 }
@@ -77,7 +89,7 @@ cw_status cwi_zarr_node_open(cwi_zarr_node *node, const cwi_input *in, const cha
     *node = (cwi_zarr_node){0};
     cw_status st = cwi_zarr_join("", path, node->path, err);
     if (st == CW_OK)
-        st = open_json(node, in, "zarr.json", &node->meta, err);
+        st = cwi_zarr_node_json(node, in, "zarr.json", &node->meta, err);
     if (st == CW_OK && node->meta.root)
         st = read_node_type(node, err);
     else if (st == CW_OK)
@@ -97,23 +109,27 @@ void cwi_zarr_node_close(cwi_zarr_node *node)
 cw_status cwi_zarr_fail_in(cw_error *err, cw_status status, const cwi_zarr_node *node,
                            bool in_attributes)
 {
-    const char *name = node->version == 3                ? "zarr.json"
-                       : in_attributes                   ? ".zattrs"
-                       : node->kind == CWI_ZARR_IS_ARRAY ? ".zarray"
-                                                         : ".zgroup";
+    const cwi_zarr_words *words = node->words;
     char path[CWI_ZARR_KEY_BYTES];
-    if (cwi_zarr_join(node->path, name, path, NULL) != CW_OK)
+    if (cwi_zarr_join(words->at_root ? "" : node->path,
+                      in_attributes ? words->attributes : words->file, path, NULL) != CW_OK)
         return status;
     return cwi_fail_in(err, status, path);
 }
 
-cw_status cwi_zarr_node_array(const cwi_zarr_node *node, cwi_zarr_array *array, cw_error *err)
+cw_status cwi_zarr_parse(const cwi_zarr_node *node, cwi_zarr_array *array, cw_error *err)
 {
-    *array = (cwi_zarr_array){0};
+    return node->words == &words_v3
+               ? cwi_zarr_parse_v3(node->meta.root, array, err)
+               : cwi_zarr_parse_v2(node->meta.root, node->attrs, array, err);
+}
+
+cw_status cwi_zarr_node_array(const cwi_zarr_dialect *dialect, const cwi_zarr_node *node,
+                              cwi_zarr_array *array, cw_error *err)
+{
+    *array = (cwi_zarr_array){.words = node->words};
     snprintf(array->path, sizeof array->path, "%s", node->path);
-    cw_status st = node->version == 2
-                       ? cwi_zarr_parse_v2(node->meta.root, node->attrs, array, err)
-                       : cwi_zarr_parse_v3(node->meta.root, array, err);
+    cw_status st = dialect->parse_array(node, array, err);
     return st == CW_OK ? CW_OK : cwi_zarr_fail_in(err, st, node, false);
 }
 
@@ -154,8 +170,8 @@ static cw_status list_folders(const cwi_input *in, const char *path, cwi_names *
     return st;
 }
 
-static cw_status list_below(const cwi_input *in, const char *path, int depth,
-                            cwi_zarr_listing *list, cw_error *err)
+static cw_status list_below(const cwi_zarr_dialect *dialect, const cwi_input *in,
+                            const char *path, int depth, cwi_zarr_listing *list, cw_error *err)
 {
     cwi_names names = {0};
     cw_status st = depth < MAX_DEPTH ? list_folders(in, path, &names, err) : CW_OK;
@@ -168,21 +184,20 @@ static cw_status list_below(const cwi_input *in, const char *path, int depth,
         }
         st = cwi_zarr_join(path, names.items[n], child, err);
         if (st == CW_OK)
-            st = cwi_zarr_node_open(&node, in, child, err);
-        const bool is_image = json_is_array(json_object_get(node.ome, "multiscales"));
-        if (st == CW_OK && (node.kind == CWI_ZARR_IS_ARRAY || is_image))
+            st = dialect->open_node(&node, in, child, err);
+        if (st == CW_OK && (node.kind == CWI_ZARR_IS_ARRAY || dialect->is_image(&node)))
             st = cwi_names_add(&list->paths, child, err);
         else if (st == CW_OK && node.kind == CWI_ZARR_IS_GROUP)
-            st = list_below(in, child, depth + 1, list, err);
+            st = list_below(dialect, in, child, depth + 1, list, err);
         cwi_zarr_node_close(&node);
     }
     cwi_names_free(&names);
     return st;
 }
 
-cw_status cwi_zarr_list(const cwi_input *in, const char *path, cwi_zarr_listing *list,
-                        cw_error *err)
+cw_status cwi_zarr_list(const cwi_zarr_dialect *dialect, const cwi_input *in, const char *path,
+                        cwi_zarr_listing *list, cw_error *err)
 {
     *list = (cwi_zarr_listing){0};
-    return list_below(in, path, 0, list, err);
+    return list_below(dialect, in, path, 0, list, err);
 }

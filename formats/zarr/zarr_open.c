@@ -1,4 +1,4 @@
-/* Opens an array of a Zarr store: finds it by path, name or level, and makes its caches. */
+/* Opens an array of a store: finds it by path, name or level, and makes its caches. */
 #include "formats/zarr/zarr.h"
 
 #include "core/base/memory.h"
@@ -6,10 +6,8 @@
 #include "core/base/thread_pool.h"
 #include "core/volume/label_ids.h"
 #include "formats/bytes/file_pattern.h"
-#include "formats/text/label_ome.h"
 #include "formats/volume/named_arrays.h"
-#include "formats/zarr/zarr_handle.h"
-#include "formats/zarr/zarr_image.h"
+#include "formats/zarr/zarr_dialect.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -25,104 +23,60 @@ enum { MAX_ABOVE = 3 };
 static cw_status take_array(cwi_zarr *z, const cwi_zarr_node *node, cw_error *err)
 {
     cwi_zarr_frame frame;
-    cw_status st = cwi_zarr_node_array(node, &z->array, err);
+    cw_status st = cwi_zarr_node_array(z->dialect, node, &z->array, err);
     if (st != CW_OK)
         return st;
-    cwi_zarr_plain_frame(&z->array, &frame);
-    st = cwi_zarr_set_frame(z, &frame, err);
+    st = z->dialect->array_frame(node, &z->array, &frame, err);
+    if (st == CW_OK)
+        st = cwi_zarr_set_frame(z, &frame, err);
     return st == CW_OK ? CW_OK : cwi_zarr_fail_in(err, st, node, false);
 }
 
-/* Reads the labels of an image-label, and marks the volume as one. */
-static cw_status take_labels(cwi_zarr *z, const cwi_zarr_node *node, cwi_zarr_found *found,
-                             cw_error *err)
-{
-    const json_t *image = json_object_get(node->ome, "image-label");
-    if (!json_is_object(image))
-        return CW_OK;
-    z->shape.known |= CW_KNOWN_LABELS;
-    if (z->array.stored == CWI_STORED_I64)
-        z->array.type = CW_U32;
-    cw_status st = found->labels ? cwi_label_ome_read(image, found->labels, err) : CW_OK;
-    return st == CW_OK ? CW_OK : cwi_zarr_fail_in(err, st, node, true);
-}
-
-/* Opens the array of a level. */
+/* Opens the array of a level, and its node, which the caller closes in any case. */
 static cw_status open_level(const cwi_zarr *z, const cwi_zarr_node *image, size_t level,
-                            cwi_zarr_array *array, cw_error *err)
+                            cwi_zarr_node *node, cwi_zarr_array *array, cw_error *err)
 {
     char path[CWI_ZARR_KEY_BYTES];
-    cwi_zarr_node node = {0};
-    cw_status st = cwi_zarr_level_path(image, level, path, err);
+    *node = (cwi_zarr_node){0};
+    cw_status st = z->dialect->level_path(image, level, path, err);
     if (st == CW_OK)
-        st = cwi_zarr_node_open(&node, &z->in, path, err);
-    if (st == CW_OK && node.kind != CWI_ZARR_IS_ARRAY) {
-        st = cwi_fail(err, CW_ERR_FORMAT,
-                      "datasets[%zu]: 'path' is '%.200s', where no array is", level, path);
+        st = z->dialect->open_node(node, &z->in, path, err);
+    if (st == CW_OK && node->kind != CWI_ZARR_IS_ARRAY) {
+        st = cwi_fail(err, CW_ERR_FORMAT, "level %zu is '%.200s', where no array is", level,
+                      path);
         cwi_zarr_fail_in(err, st, image, true);
     }
-    if (st == CW_OK)
-        st = cwi_zarr_node_array(&node, array, err);
-    cwi_zarr_node_close(&node);
-    return st;
-}
-
-/* Notes the images of labels that belong to an image. */
-static void note_labels(const cwi_zarr *z, const cwi_zarr_node *image, cwi_zarr_found *found)
-{
-    cwi_zarr_node node = {0};
-    char path[CWI_ZARR_KEY_BYTES];
-    size_t used = 0;
-    if (cwi_zarr_join(image->path, "labels", path, NULL) == CW_OK &&
-        cwi_zarr_node_open(&node, &z->in, path, NULL) == CW_OK) {
-        const json_t *list = json_object_get(node.ome, "labels");
-        for (size_t n = 0; n < json_array_size(list) && used < 300; n++) {
-            const char *name = json_string_value(json_array_get(list, n));
-            used += (size_t)snprintf(
-                found->note + used, sizeof found->note - used, "%s'%.40s/%.40s'",
-                used ? ", " : "label maps of it, for desc->array: ", path, name ? name : "?");
-        }
-    }
-    cwi_zarr_node_close(&node);
+    return st == CW_OK ? cwi_zarr_node_array(z->dialect, node, array, err) : st;
 }
 
 static cw_status take_image(cwi_zarr *z, const cwi_zarr_node *image, size_t level,
                             cwi_zarr_found *found, cw_error *err)
 {
     cwi_zarr_frame frame;
-    const size_t count = cwi_zarr_level_count(image);
+    cwi_zarr_node node;
+    const size_t count = z->dialect->level_count(image);
     if (count == 0)
         return cwi_zarr_fail_in(
             err, cwi_fail(err, CW_ERR_FORMAT, "'multiscales' has no 'datasets'"), image, true);
     if (level >= count)
         return cwi_fail(err, CW_ERR_ARGUMENT, "level %zu was asked for; there are %zu, from 0",
                         level, count);
-    cw_status st = open_level(z, image, level, &z->array, err);
+    cw_status st = open_level(z, image, level, &node, &z->array, err);
+    if (st == CW_OK && z->dialect->read_facts)
+        st = z->dialect->read_facts(z, image, found, err);
     if (st == CW_OK)
-        st = take_labels(z, image, found, err);
-    if (st == CW_OK)
-        st = cwi_zarr_level_frame(image, level, &z->array, &frame, err);
+        st = z->dialect->level_frame(image, level, &node, &z->array, &frame, err);
     if (st == CW_OK && (st = cwi_zarr_set_frame(z, &frame, err)) != CW_OK)
         cwi_zarr_fail_in(err, st, image, true);
     z->level_count = count;
-    const size_t images = json_array_size(json_object_get(image->ome, "multiscales"));
-    if (st == CW_OK)
-        note_labels(z, image, found);
-    if (st == CW_OK && images > 1 && !*found->note)
-        snprintf(found->note, sizeof found->note,
-                 "'multiscales' lists %zu images; the first is taken", images);
+    cwi_zarr_node_close(&node);
     return st;
-}
-
-static bool is_image(const cwi_zarr_node *node)
-{
-    return json_is_array(json_object_get(node->ome, "multiscales"));
 }
 
 static cw_status take_node(cwi_zarr *z, const cwi_zarr_node *node, size_t level,
                            cwi_zarr_found *found, cw_error *err)
 {
-    if (is_image(node))
+    if (z->dialect->is_image(node))
         return take_image(z, node, level, found, err);
     if (level > 0)
         return cwi_fail(err, CW_ERR_ARGUMENT,
@@ -132,11 +86,13 @@ static cw_status take_node(cwi_zarr *z, const cwi_zarr_node *node, size_t level,
 }
 
 /* Finds the level of an image that a name is the path of. */
-static bool find_named_level(const cwi_zarr_node *root, const char *name, size_t *level)
+static bool find_named_level(const cwi_zarr *z, const cwi_zarr_node *root, const char *name,
+                             size_t *level)
 {
     char path[CWI_ZARR_KEY_BYTES];
-    for (size_t n = 0; is_image(root) && n < cwi_zarr_level_count(root); n++)
-        if (cwi_zarr_level_path(root, n, path, NULL) == CW_OK && strcmp(path, name) == 0) {
+    const size_t count = z->dialect->is_image(root) ? z->dialect->level_count(root) : 0;
+    for (size_t n = 0; n < count; n++)
+        if (z->dialect->level_path(root, n, path, NULL) == CW_OK && strcmp(path, name) == 0) {
             *level = n;
             return true;
         }
@@ -153,8 +109,8 @@ static cw_status find_image_above(const cwi_zarr *z, const char *name, cwi_zarr_
     while (*path) {
         char *slash = strrchr(path, '/');
         *(slash ? slash : path) = '\0';
-        const cw_status st = cwi_zarr_node_open(image, &z->in, path, err);
-        if (st != CW_OK || find_named_level(image, name, level))
+        const cw_status st = z->dialect->open_node(image, &z->in, path, err);
+        if (st != CW_OK || find_named_level(z, image, name, level))
             return st;
         cwi_zarr_node_close(image);
     }
@@ -168,7 +124,7 @@ static cw_status take_level(cwi_zarr *z, const char *name, cwi_zarr_found *found
     cwi_zarr_node image = {0};
     size_t level = 0;
     cw_status st = find_image_above(z, name, &image, &level, err);
-    *is_taken = st == CW_OK && is_image(&image);
+    *is_taken = st == CW_OK && z->dialect->is_image(&image);
     if (*is_taken) {
         st = take_image(z, &image, level, found, err);
         z->level_count = 0; /* one was named */
@@ -183,13 +139,14 @@ static cw_status take_level(cwi_zarr *z, const char *name, cwi_zarr_found *found
 static cw_status look_at(const cwi_zarr *z, const char *path, cwi_zarr_array *array,
                          cw_error *err)
 {
-    cwi_zarr_node node = {0};
+    cwi_zarr_node node = {0}, level = {0};
     cw_error ignored;
     *array = (cwi_zarr_array){0};
-    cw_status st = cwi_zarr_node_open(&node, &z->in, path, err);
+    cw_status st = z->dialect->open_node(&node, &z->in, path, err);
     if (st == CW_OK) {
-        st = is_image(&node) ? open_level(z, &node, 0, array, &ignored)
-                             : cwi_zarr_node_array(&node, array, &ignored);
+        st = z->dialect->is_image(&node)
+                 ? open_level(z, &node, 0, &level, array, &ignored)
+                 : cwi_zarr_node_array(z->dialect, &node, array, &ignored);
         if (st == CW_ERR_NO_MEMORY) {
             cwi_fail(err, st, "%s", ignored.message);
         } else if (st != CW_OK) {
@@ -197,6 +154,7 @@ static cw_status look_at(const cwi_zarr *z, const char *path, cwi_zarr_array *ar
             st = CW_OK;
         }
     }
+    cwi_zarr_node_close(&level);
     cwi_zarr_node_close(&node);
     return st;
 }
@@ -207,7 +165,7 @@ static cw_status choose_array(cwi_zarr *z, const cwi_zarr_node *group, cwi_zarr_
 {
     cwi_zarr_listing list;
     size_t best = 0;
-    cw_status st = cwi_zarr_list(&z->in, group->path, &list, err);
+    cw_status st = cwi_zarr_list(z->dialect, &z->in, group->path, &list, err);
     chosen[0] = '\0';
     for (size_t n = 0; st == CW_OK && n < list.paths.count; n++) {
         cwi_zarr_array array;
@@ -243,7 +201,7 @@ static cw_status take_group(cwi_zarr *z, const cwi_zarr_node *group, size_t leve
         st = take_level(z, path, found, &is_taken, err);
     if (st != CW_OK || is_taken)
         return st;
-    st = cwi_zarr_node_open(&node, &z->in, path, err);
+    st = z->dialect->open_node(&node, &z->in, path, err);
     if (st == CW_OK)
         st = take_node(z, &node, level, found, err);
     cwi_zarr_node_close(&node);
@@ -256,7 +214,7 @@ static cw_status fail_name(const cwi_zarr *z, const char *name, cw_error *err)
     cwi_zarr_listing list;
     char text[240] = "";
     size_t used = 0, n = 0;
-    cw_status st = cwi_zarr_list(&z->in, "", &list, err);
+    cw_status st = cwi_zarr_list(z->dialect, &z->in, "", &list, err);
     for (; st == CW_OK && n < list.paths.count && used < sizeof text - 80; n++)
         used += (size_t)snprintf(text + used, sizeof text - used, "%s'%.60s'",
                                  used ? ", " : "; there are ", list.paths.items[n]);
@@ -277,10 +235,10 @@ static cw_status take_named(cwi_zarr *z, const cwi_zarr_desc *desc, cwi_zarr_fou
     cw_status st = take_level(z, desc->array, found, &is_taken, err);
     if (st != CW_OK || is_taken)
         return st;
-    st = cwi_zarr_node_open(&node, &z->in, desc->array, err);
+    st = z->dialect->open_node(&node, &z->in, desc->array, err);
     if (st == CW_OK && node.kind == CWI_ZARR_NOTHING)
         st = fail_name(z, desc->array, err);
-    else if (st == CW_OK && node.kind == CWI_ZARR_IS_GROUP && !is_image(&node))
+    else if (st == CW_OK && node.kind == CWI_ZARR_IS_GROUP && !z->dialect->is_image(&node))
         st = take_group(z, &node, level, found, err);
     else if (st == CW_OK)
         st = take_node(z, &node, level, found, err);
@@ -311,8 +269,8 @@ static cw_status open_folder_above(cwi_zarr *z, const char *path, char name[CWI_
         snprintf(name, CWI_ZARR_KEY_BYTES, "%.*s", (int)(whole - end), path + end);
         above[end > 1 ? end - 1 : end] = '\0';
         if (cwi_input_open_folder(&in, *above ? above : ".", &ignored) == CW_OK &&
-            cwi_zarr_node_open(&image, &in, "", &ignored) == CW_OK)
-            is_found = find_named_level(&image, name, &level);
+            z->dialect->open_node(&image, &in, "", &ignored) == CW_OK)
+            is_found = find_named_level(z, &image, name, &level);
         cwi_zarr_node_close(&image);
         cwi_input_close(&in);
         end -= end > 0;
@@ -346,14 +304,13 @@ static cw_status take_root(cwi_zarr *z, const cwi_zarr_desc *desc, cwi_zarr_foun
                            cw_error *err)
 {
     cwi_zarr_node root = {0};
-    cw_status st = cwi_zarr_node_open(&root, &z->in, "", err);
+    cw_status st = z->dialect->open_node(&root, &z->in, "", err);
     if (st == CW_OK && root.kind == CWI_ZARR_NOTHING && !desc->array)
-        st = cwi_fail(err, CW_ERR_FORMAT,
-                      "the folder has no metadata of Zarr; zarr.json, .zarray or .zgroup was "
-                      "expected");
+        st = cwi_fail(err, CW_ERR_FORMAT, "the folder has no metadata of %s; %s was expected",
+                      z->dialect->noun, z->dialect->expected);
     else if (st == CW_OK && desc->array)
         st = take_named(z, desc, found, err);
-    else if (st == CW_OK && root.kind == CWI_ZARR_IS_GROUP && !is_image(&root))
+    else if (st == CW_OK && root.kind == CWI_ZARR_IS_GROUP && !z->dialect->is_image(&root))
         st = take_group(z, &root, desc->level, found, err);
     else if (st == CW_OK && root.kind == CWI_ZARR_IS_ARRAY)
         st = take_lone_array(z, &root, desc->level, found, err);
@@ -368,20 +325,23 @@ static cw_status take_root(cwi_zarr *z, const cwi_zarr_desc *desc, cwi_zarr_foun
 /* Opens the folder of a path, which may name a metadata file in it. */
 static cw_status open_store(cwi_zarr *z, const char *path, cw_error *err)
 {
-    static const char *const names[] = {"zarr.json", ".zarray", ".zgroup", ".zattrs",
-                                        ".zmetadata"};
+    char name[CWI_ZARR_NAME_BYTES];
     z->path = cwi_strdup(path);
     if (!z->path)
         return cwi_fail_memory(err);
     if (cwi_is_folder(path))
         return cwi_input_open_folder(&z->in, z->path, err);
     cw_status st = cwi_input_open(&z->in, z->path, err);
-    for (size_t n = 0; st == CW_OK && n < sizeof names / sizeof *names; n++)
-        if (cwi_input_is_named(&z->in, names[n]))
+    for (const char *next = z->dialect->files; st == CW_OK && *next;) {
+        const size_t length = strcspn(next, " ");
+        snprintf(name, sizeof name, "%.*s", (int)length, next);
+        if (cwi_input_is_named(&z->in, name))
             return CW_OK;
+        next += length + (next[length] == ' ');
+    }
     return st == CW_OK ? cwi_fail(err, CW_ERR_FORMAT,
-                                  "the folder of a Zarr store was expected, or zarr.json, "
-                                  ".zarray or .zgroup in it")
+                                  "the folder of a %s store was expected, or %s in it",
+                                  z->dialect->noun, z->dialect->expected)
                        : st;
 }
 
@@ -414,10 +374,13 @@ cw_status cwi_zarr_open_found(const char *path, const cwi_zarr_desc *desc,
         return cwi_fail_memory(err);
     pthread_mutex_init(&z->lock, NULL);
     z->threads = desc->threads;
+    z->dialect = desc->dialect ? desc->dialect : &cwi_dialect_zarr;
     cw_status st = open_store(z, path, err);
     z->in.allow_external = desc->allow_external;
     if (st == CW_OK)
         st = take_root(z, desc, found, err);
+    if (st == CW_OK && z->dialect->prepare)
+        st = z->dialect->prepare(z, err);
     if (st == CW_OK)
         st = make_caches(z, desc->cache_bytes ? desc->cache_bytes : CACHE_BYTES, err);
     if (st == CW_OK)
@@ -448,6 +411,7 @@ void cwi_zarr_close(cwi_zarr *z)
     cwi_zarr_close_shards(z);
     cwi_input_close(&z->in);
     pthread_mutex_destroy(&z->lock);
+    cwi_free(z->extra);
     cwi_free(z->path);
     cwi_free(z);
 }

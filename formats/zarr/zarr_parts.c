@@ -174,8 +174,8 @@ cw_status cwi_zarr_add_codec(cwi_zarr_chain *chain, const char *key, const char 
     };
     const char *bare = strncmp(name, "numcodecs.", 10) == 0 ? name + 10 : name;
     for (int c = 0; c < CWI_ZARR_CODEC_COUNT; c++) {
-        if (strcmp(bare, names[c]) != 0)
-            continue;
+        if (c == CWI_ZARR_LZ4_FRAMES || strcmp(bare, names[c]) != 0)
+            continue; /* those frames are of N5 alone */
         if (chain->count == CWI_ZARR_CODECS)
             return cwi_fail(err, CW_ERR_LIMIT, "'%s' lists more than %d codecs", key,
                             CWI_ZARR_CODECS);
@@ -184,6 +184,6 @@ cw_status cwi_zarr_add_codec(cwi_zarr_chain *chain, const char *key, const char 
     }
     return cwi_fail(err, CW_ERR_FORMAT,
                     "'%s' names the codec '%.40s'; those that are read are zlib, gzip, zstd, "
-                    "lz4, blosc, crc32c",
+                    "lz4, blosc, crc32c, bz2",
                     key, name);
 }

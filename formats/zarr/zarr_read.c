@@ -4,37 +4,21 @@
 #include "core/volume/volume.h"
 #include "formats/volume/named_arrays.h"
 #include "formats/volume/slice_visit.h"
-#include "formats/zarr/zarr_format.h"
-#include "formats/zarr/zarr_handle.h"
+#include "formats/zarr/zarr_dialect.h"
 
 #include <stdio.h>
 #include <string.h>
-#include <unistd.h>
 
-static bool has_file(const cwi_input *folder, const char *name)
+static cwi_zarr_desc describe_opening(const cwi_zarr_dialect *dialect, const cw_read_desc *desc)
 {
-    uint64_t size;
-    int fd = -1;
-    if (cwi_input_find_side(folder, name, &fd, &size, NULL) != CW_OK || fd < 0)
-        return false;
-    close(fd);
-    return true;
-}
-
-bool cwi_zarr_is_store(const cwi_input *folder)
-{
-    return has_file(folder, "zarr.json") || has_file(folder, ".zarray") ||
-           has_file(folder, ".zgroup");
-}
-
-static cwi_zarr_desc describe_opening(const cw_read_desc *desc)
-{
-    return (cwi_zarr_desc){
-        .array = desc->array, .level = desc->level, .allow_external = desc->allow_external};
+    return (cwi_zarr_desc){.array = desc->array,
+                           .level = desc->level,
+                           .allow_external = desc->allow_external,
+                           .dialect = dialect};
 }
 
 /* Sets the strides of packed voxels, and counts their bytes. */
-static cw_status pack_shape(cw_volume *v, size_t *bytes, cw_error *err)
+static cw_status pack_shape(const char *field, cw_volume *v, size_t *bytes, cw_error *err)
 {
     size_t stride = cw_type_size(v->type);
     const size_t counts[] = {v->dim[0], v->dim[1], v->dim[2], v->components, v->steps};
@@ -44,16 +28,17 @@ static cw_status pack_shape(cw_volume *v, size_t *bytes, cw_error *err)
         *strides[n] = (ptrdiff_t)stride;
         if (!cwi_size_mul(stride, counts[n], &stride) || stride > PTRDIFF_MAX)
             return cwi_fail(err, CW_ERR_LIMIT,
-                            "'shape' asks for more voxels than an address space holds");
+                            "'%s' asks for more voxels than an address space holds", field);
     }
     *bytes = stride;
     return CW_OK;
 }
 
 /* Narrows the shape to the wanted part, and the box to its voxels. */
-static cw_status narrow_shape(const cw_read_desc *desc, cw_volume *v, cwi_zarr_box *box,
-                              size_t *bytes, cw_error *err)
+static cw_status narrow_shape(const cwi_zarr *zarr, const cw_read_desc *desc, cw_volume *v,
+                              cwi_zarr_box *box, size_t *bytes, cw_error *err)
 {
+    const char *field = zarr->array.words->shape;
     size_t every[3];
     cw_status st = desc->region ? cwi_volume_shrink(v, desc->region, err) : CW_OK;
     for (int a = 0; a < 3; a++) {
@@ -69,10 +54,9 @@ static cw_status narrow_shape(const cw_read_desc *desc, cw_volume *v, cwi_zarr_b
     for (int a = 0; st == CW_OK && a < 3; a++) /* those beyond the last step are left out */
         box->count[a] = (v->dim[a] - 1) * every[a] + 1;
     if (st == CW_OK)
-        st = pack_shape(v, bytes, err);
-    return st == CW_OK
-               ? cwi_check_limits(v, *bytes, desc->region ? "region" : "shape", desc, err)
-               : st;
+        st = pack_shape(field, v, bytes, err);
+    return st == CW_OK ? cwi_check_limits(v, *bytes, desc->region ? "region" : field, desc, err)
+                       : st;
 }
 
 /* The slices of a box. */
@@ -101,7 +85,7 @@ static cw_status visit_slices(cwi_zarr *zarr, cwi_slice_visit *visit, const cw_r
     size_t bytes = 0;
     limits.max_bytes = 0; /* voxels are not read at once */
     cwi_set_spacing(&v, desc);
-    cw_status st = narrow_shape(&limits, &v, &s.box, &bytes, err);
+    cw_status st = narrow_shape(zarr, &limits, &v, &s.box, &bytes, err);
     if (st != CW_OK)
         return st;
     v.components = v.steps = 1;
@@ -119,7 +103,7 @@ static cw_status load_volume(cwi_zarr *zarr, const cw_read_desc *desc, cw_volume
     cwi_zarr_box box = {0};
     size_t bytes = 0;
     cwi_set_spacing(&v, desc);
-    cw_status st = narrow_shape(desc, &v, &box, &bytes, err);
+    cw_status st = narrow_shape(zarr, desc, &v, &box, &bytes, err);
     if (st != CW_OK || desc->header_only) {
         if (st == CW_OK)
             *volume = v;
@@ -137,10 +121,10 @@ static cw_status load_volume(cwi_zarr *zarr, const cw_read_desc *desc, cw_volume
     return st;
 }
 
-cw_status cwi_zarr_read(const cwi_input *in, const cw_read_desc *desc, cw_volume *volume,
-                        cw_error *err)
+cw_status cwi_zarr_read_as(const cwi_zarr_dialect *dialect, const cwi_input *in,
+                           const cw_read_desc *desc, cw_volume *volume, cw_error *err)
 {
-    const cwi_zarr_desc opening = describe_opening(desc);
+    const cwi_zarr_desc opening = describe_opening(dialect, desc);
     cwi_zarr_found found = {.arrays = in->arrays, .labels = in->labels};
     cwi_zarr *zarr;
     cw_status st = cwi_zarr_open_found(in->path, &opening, &found, &zarr, err);
@@ -165,10 +149,11 @@ static void fill_level(const cwi_zarr *zarr, cw_level *level)
     level->shape = *cwi_zarr_shape(zarr);
 }
 
-cw_status cwi_zarr_levels(const cwi_input *in, const cw_read_desc *desc, cw_level **levels,
-                          size_t *count, cw_error *err)
+cw_status cwi_zarr_levels_as(const cwi_zarr_dialect *dialect, const cwi_input *in,
+                             const cw_read_desc *desc, cw_level **levels, size_t *count,
+                             cw_error *err)
 {
-    cwi_zarr_desc opening = describe_opening(desc);
+    cwi_zarr_desc opening = describe_opening(dialect, desc);
     cwi_zarr_found found = {0};
     cwi_zarr *zarr;
     opening.level = 0;

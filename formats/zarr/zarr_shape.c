@@ -24,10 +24,8 @@ static cw_status set_affine(cwi_zarr *z, const cwi_zarr_frame *frame, cw_error *
         for (size_t d = 0; d < frame->rank; d++)
             if (frame->axes[d].role > CWI_AXIS_Z && frame->matrix[row][d] != 0)
                 return cwi_fail(
-                    err, CW_ERR_FORMAT,
-                    "'coordinateTransformations' place '%s' by '%s'; they must keep "
-                    "space apart",
-                    frame->axes[row].name, frame->axes[d].name);
+                    err, CW_ERR_FORMAT, "'%s' place '%s' by '%s'; they must keep space apart",
+                    z->array.words->frame, frame->axes[row].name, frame->axes[d].name);
     }
     return CW_OK;
 }
@@ -56,7 +54,7 @@ static void list_axes(cwi_zarr *z, const cwi_zarr_frame *frame)
 
 cw_status cwi_zarr_set_frame(cwi_zarr *z, const cwi_zarr_frame *frame, cw_error *err)
 {
-    cwi_source source = {.shape = z->shape, .size_field = "shape"};
+    cwi_source source = {.shape = z->shape, .size_field = z->array.words->shape};
     cwi_axis axes[CWI_ROLE_COUNT];
     for (int r = 0; r < CWI_ROLE_COUNT; r++) {
         z->dimensions[r] = -1;
@@ -71,9 +69,9 @@ cw_status cwi_zarr_set_frame(cwi_zarr *z, const cwi_zarr_frame *frame, cw_error 
     for (size_t d = 0; d < frame->rank; d++)
         if (frame->axes[d].role == CWI_ROLE_COUNT && z->array.shape[d] > 1)
             return cwi_fail(err, CW_ERR_FORMAT,
-                            "'shape' has %zu entries along dimension %zu of %zu; at most five "
+                            "'%s' has %zu entries along dimension %zu of %zu; at most five "
                             "dimensions are read",
-                            z->array.shape[d], d, frame->rank);
+                            z->array.words->shape, z->array.shape[d], d, frame->rank);
     cw_status st = cwi_source_set_axes(&source, axes, CWI_ROLE_COUNT, err);
     if (st != CW_OK)
         return st;
@@ -81,5 +79,5 @@ cw_status cwi_zarr_set_frame(cwi_zarr *z, const cwi_zarr_frame *frame, cw_error 
     list_axes(z, frame);
     set_units(z, frame);
     st = set_affine(z, frame, err);
-    return st == CW_OK ? cwi_check_frame(&z->shape, "coordinateTransformations", err) : st;
+    return st == CW_OK ? cwi_check_frame(&z->shape, z->array.words->frame, err) : st;
 }

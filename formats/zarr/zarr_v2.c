@@ -71,7 +71,6 @@ static cw_status read_separator(const json_t *meta, cwi_zarr_array *array, cw_er
 cw_status cwi_zarr_parse_v2(const json_t *meta, const json_t *attributes, cwi_zarr_array *array,
                             cw_error *err)
 {
-    array->version = 2;
     if (json_number_value(json_object_get(meta, "zarr_format")) != 2)
         return cwi_zarr_fail(err, meta, "zarr_format", "2");
     cw_status st = cwi_zarr_set_shape(meta, array, err);

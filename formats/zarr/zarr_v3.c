@@ -253,7 +253,6 @@ static cw_status refuse_transformers(const json_t *meta, cw_error *err)
 
 cw_status cwi_zarr_parse_v3(const json_t *meta, cwi_zarr_array *array, cw_error *err)
 {
-    array->version = 3;
     if (json_number_value(json_object_get(meta, "zarr_format")) != 3)
         return cwi_zarr_fail(err, meta, "zarr_format", "3");
     cw_status st = cwi_zarr_set_shape(meta, array, err);

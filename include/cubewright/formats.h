@@ -110,9 +110,8 @@ typedef struct cw_read_desc {
     const char *array;        /* the name, where files have several; default: the array that the
                                  file names, else the first of one value */
 
-    size_t
-        level; /* of a volume that the file holds in several sizes, as OME-Zarr does; default:
-                     0, the finest */
+    size_t level; /* of a volume that the file holds in several sizes, as OME-Zarr, N5 and
+                     Neuroglancer do; default: 0, the finest */
 
     cw_label_table *labels; /* zeroed or filled; freed first, then filled with the names and
                                colours of labels that the file holds; free it with
@@ -158,7 +157,7 @@ typedef struct cw_read_desc {
 /* Reads a volume: the whole file or a region of it, every component and time step.
  *
  * path is a file, a folder of slices, a pattern such as "scan/slice_*.tif" that names them, or
- * the folder of a Zarr store.
+ * the folder of a Zarr or N5 store, or of a precomputed volume of Neuroglancer.
  * Numbers in their names count as numbers. With a layout (raw), each slice has an equal share
  * of the voxels. A DICOM file stands for its whole series, as far as it is in the same folder.
  *
@@ -261,7 +260,7 @@ typedef struct cw_array {
     bool is_default;   /* the array that is read when none is named */
 } cw_array;
 
-/* Lists the arrays of a file of VTK or a group of Zarr, the quantities of PLOT3D or the grids of
+/* Lists the arrays of a file of VTK or a group of Zarr or N5, the quantities of PLOT3D or the grids of
  * OpenVDB. Files of other formats, folders and patterns have none. If an array at points and one at cells have
  * the same name, the one at points is read.
  *
@@ -280,7 +279,7 @@ typedef struct cw_level {
     cw_volume shape; /* as it would be read, without voxels */
 } cw_level;
 
-/* Lists the levels of an image of OME-Zarr, the finest first. Files of other formats have none.
+/* Lists the levels of an image of OME-Zarr, N5 or Neuroglancer, the finest first. Files of other formats have none.
  *
  * levels   set to *count of them, to be freed with cw_levels_free(), or to NULL
  * Returns  as cw_volume_read() for a header */

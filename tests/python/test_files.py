@@ -1,6 +1,7 @@
 """Tests reading and writing: what comes back, and what is refused."""
 
 import base64
+import gzip
 import json
 import pathlib
 
@@ -186,6 +187,27 @@ class Volumes(Case):
         self.assertTrue(np.array_equal(part.array, ball[3:5, 2:6, 1:7]))
         self.assertEqual(part.origin, (1, 2, 3))
         self.assertTrue(np.array_equal(cw.read_volume(path, raw=raw, coarsen=2).array, ball[::2, ::2, ::2]))
+
+    def test_levels_of_n5_stores(self):
+        store = self.folder / "image.n5"
+        fine = np.arange(5 * 4 * 6, dtype=">u2").reshape(5, 4, 6)
+        for number, voxels in enumerate((fine, fine[:, ::2, ::2])):
+            level = store / f"s{number}"
+            (level / "0/0").mkdir(parents=True)
+            sizes = list(reversed(voxels.shape))
+            attributes = {"dimensions": sizes, "blockSize": sizes, "dataType": "uint16"}
+            attributes |= {"compression": {"type": "gzip"}, "downsamplingFactors": [1 + number, 1 + number, 1]}
+            (level / "attributes.json").write_text(json.dumps(attributes))
+            header = np.array([0, 3], ">u2").tobytes() + np.array(sizes, ">u4").tobytes()
+            (level / "0/0/0").write_bytes(header + gzip.compress(voxels.tobytes()))
+        (store / "attributes.json").write_text('{"resolution": [4, 4, 30], "units": ["um", "um", "um"]}')
+        volume = cw.read_volume(store)
+        self.assertTrue((volume.array == fine).all())
+        self.assertTrue(np.allclose(volume.spacing, (0.004, 0.004, 0.03)))
+        volume = cw.read_volume(store, level=1)
+        self.assertTrue((volume.array == fine[:, ::2, ::2]).all())
+        self.assertTrue(np.allclose(volume.affine[:3, 3], (0.002, 0.002, 0)))
+        self.assertEqual(cw.read_volume(store, array="s1").array.shape, (5, 2, 3))
 
     def test_names_and_colours_of_labels_come_with_their_volume(self):
         path = self.folder / "organs.seg.nrrd"

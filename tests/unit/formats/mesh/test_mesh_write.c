@@ -265,16 +265,17 @@ static void the_table_of_formats_is_whole_and_always_the_same(void **state)
 {
     (void)state;
     static const char expected[] =
-        "nrrd nifti metaimage vtk vtu vtm vti vtkhdf mrc inr mgh npy dicom tiff png bmp zarr vdb plot3d "
-        "raw glb gltf stl ply obj off 3mf vtp gifti freesurfer drc neuroglancer ";
-    char names[200] = "";
+        "nrrd nifti metaimage vtk vtu vtm vti vtkhdf mrc inr mgh npy dicom tiff png bmp zarr n5 "
+        "precomputed vdb plot3d raw glb gltf stl ply obj off 3mf vtp gifti freesurfer drc neuroglancer ";
+    char names[400] = "";
     size_t count, again;
     const cw_format *formats = cw_formats(&count);
     assert_ptr_equal(formats, cw_formats(&again));
     assert_int_equal(count, again);
     for (size_t i = 0; i < count; i++) {
         strcat(strcat(names, formats[i].name), " ");
-        const bool is_folder = strcmp(formats[i].name, "neuroglancer") == 0;
+        const bool is_folder = strcmp(formats[i].name, "neuroglancer") == 0 ||
+                               strcmp(formats[i].name, "precomputed") == 0;
         assert_true(is_folder != (formats[i].extensions[0] == '.') && formats[i].about[0]);
         assert_non_null(formats[i].lost);
         assert_true(formats[i].reads_volume || formats[i].writes_mesh || formats[i].reads_mesh);

@@ -369,6 +369,35 @@ static void names_of_dimensions_place_them(void **state)
     }
 }
 
+/* Two streams of bzip2 in a row, as another program wrote them. */
+static void chunks_of_bz2_are_read(void **state)
+{
+    (void)state;
+    static const char bytes[] =
+        "BZh91AY&SY\x0a\xb1\x93\x99\0\0\x05\xc0\0\x70\0\x20\0\x20\xa5\x34\x19\x8c\x58\xb0\xbc"
+        "\x5d\xc9\x14\xe1\x42\x40\x2a\xc6\x4e\x64"
+        "BZh91AY&SY\x0a\xb1\x93\x99\0\0\x05\xc0\0\x70\0\x20\0\x20\xa5\x34\x19\x8c\x58\xb0\xbc"
+        "\x5d\xc9\x14\xe1\x42\x40\x2a\xc6\x4e\x64";
+    cw_volume v;
+    cw_error err = {0};
+    zarr_put_text(
+        "bz2/.zarray",
+        "{\"zarr_format\": 2, \"shape\": [3, 4, 4], \"chunks\": [3, 4, 4], \"dtype\": "
+        "\">u2\", \"order\": \"C\", \"fill_value\": 0, \"filters\": null, "
+        "\"compressor\": {\"id\": \"bz2\", \"level\": 9}}");
+    zarr_put("bz2/0.0.0", bytes, sizeof bytes - 1);
+    const cw_status st = read_back("bz2", &v, &err);
+    if (st == CW_ERR_UNSUPPORTED)
+        return; /* this build lacks it */
+    assert_ok(st, err);
+    for (size_t n = 0; n < 48; n++)
+        assert_int_equal(((const uint16_t *)v.data)[n], 1 + n % 2);
+    cw_volume_free(&v);
+    zarr_put("bz2/0.0.0", bytes, sizeof bytes - 9);
+    assert_fails(read_back("bz2", &v, &err), CW_ERR_FORMAT,
+                 "0.0.0: a chunk is damaged, or has more than its 96 bytes (bz2)", err);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -379,6 +408,7 @@ int main(void)
         cmocka_unit_test(integers_of_64_bits_must_fit_32),
         cmocka_unit_test(missing_chunks_have_the_fill_value),
         cmocka_unit_test(names_of_dimensions_place_them),
+        cmocka_unit_test(chunks_of_bz2_are_read),
     };
     return cmocka_run_group_tests(tests, test_folder_make, test_folder_remove);
 }

@@ -211,7 +211,7 @@ static void paths_and_links_stay_within_the_store(void **state)
     cw_volume_free(&v);
     put_level("missing");
     assert_fails(read_back("store", &v, &err), CW_ERR_FORMAT,
-                 "datasets[0]: 'path' is 'missing', where no array is", err);
+                 "level 0 is 'missing', where no array is", err);
     desc = (cw_read_desc){.array = "../outside"};
     assert_fails(cw_volume_read(test_path("store"), &desc, &v, NULL, &err), CW_ERR_UNSAFE,
                  "a path with '..'", err);
