@@ -167,8 +167,8 @@ static void print_steps(const cli_label_run *r, char text[STEPS_BYTES])
         n += snprintf(text + n, STEPS_BYTES - (size_t)n, ", within %.6g mm", r->error_mm);
     const cli_label_item *worst = find_worst(r);
     if (worst)
-        n += snprintf(text + n, STEPS_BYTES - (size_t)n,
-                      ", by up to %.3g mm (label %s, %.40s)", worst->max_error_mm,
+        n += snprintf(text + n, STEPS_BYTES - (size_t)n, ", by up to %.3g mm (label %s, %.40s)",
+                      worst->max_error_mm,
                       cw_label_number(&worst->label, (char[CW_LABEL_NUMBER]){0}), worst->name);
     if (r->extracted && r->args->per_label && n < STEPS_BYTES)
         snprintf(text + n, STEPS_BYTES - (size_t)n,

@@ -23,7 +23,8 @@ typedef struct cli_label_item {
     size_t voxels;
     cw_mesh mesh; /* closed, unless open; empty where only interfaces are written */
     cw_pipeline_facts facts;
-    double max_error_mm, rms_error_mm; /* measured from the surface before --simplify N, --lod; NAN: not */
+    double max_error_mm,
+        rms_error_mm; /* measured from the surface before --simplify N, --lod; NAN: not */
 } cli_label_item;
 
 typedef struct cli_label_run {

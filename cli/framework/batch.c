@@ -25,10 +25,10 @@ enum { BESIDE = sizeof beside / sizeof *beside };
 
 typedef struct job {
     const char *input;
-    char *output;    /* its name, with '*' for what is known only later; NULL: none */
+    char *output;         /* its name, with '*' for what is known only later; NULL: none */
     char *beside[BESIDE]; /* their names; NULL: not asked for */
-    pid_t child;     /* 0: not started, or ended */
-    FILE *out, *err; /* of the child; NULL: those of this process */
+    pid_t child;          /* 0: not started, or ended */
+    FILE *out, *err;      /* of the child; NULL: those of this process */
     double start, seconds;
     int exit_code;
     bool is_skipped, is_started, is_ended, is_reported;
@@ -157,8 +157,8 @@ static cw_status check_outputs(const batch_run *r, int which, const char *text, 
     if (!sorted)
         return cwi_fail_memory(err);
     for (size_t n = 0; n < r->count; n++)
-        sorted[n] = (written){which < 0 ? r->jobs[n].output : r->jobs[n].beside[which],
-                              &r->jobs[n]};
+        sorted[n] =
+            (written){which < 0 ? r->jobs[n].output : r->jobs[n].beside[which], &r->jobs[n]};
     qsort(sorted, r->count, sizeof *sorted, compare_outputs);
     for (size_t n = 1; n < r->count && st == CW_OK; n++)
         if (strcmp(sorted[n - 1].path, sorted[n].path) == 0)

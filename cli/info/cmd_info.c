@@ -6,11 +6,7 @@
 #include "cli/framework/field_names.h"
 #include "cli/framework/quantity.h"
 #include "cli/framework/run_config.h"
-#include "cli/info/info_labels.h"
-#include "cli/info/info_predict.h"
-#include "cli/info/info_scales.h"
-#include "cli/info/info_within.h"
-#include "cli/inputs/level_choice.h"
+#include "cli/info/info_facts.h"
 #include "cli/inputs/time_series.h"
 #include "cli/inputs/volume_input.h"
 #include "core/base/memory.h"
@@ -57,70 +53,43 @@ static const cli_option options[] = {
     CLI_INPUT_OPTIONS(info_args),
 };
 
-/* Between how many kinds of values levels are sought, and in how many bins. */
-enum { MAX_LEVELS = 3, TISSUES = CLI_LEVEL_METAL - CLI_LEVEL_BONE + 1 };
-
-/* As many as readers take. */
-enum { MAX_COMPONENTS = 16 };
-
-typedef struct level {
-    const char *name;
-    double value;
-    size_t triangles; /* of --levels */
-} level;
-
-typedef struct facts {
-    cli_volume volume;
-    cw_series series;    /* of a DICOM image; else no images */
-    cw_statistics range; /* and the bins asked for */
-    level levels[MAX_LEVELS + 2 + TISSUES];
-    int level_count;
-    cli_label_facts labels;
-    cli_scales scales;
-    cli_within within;
-    cli_predictions predictions;
-    double read_seconds; /* of the volume, or of the part that was read */
-    cw_array *arrays;    /* of a file that has several; else NULL */
-    size_t array_count;
-    double (*ranges)[2]; /* array_count x MAX_COMPONENTS: of those that are read */
-} facts;
-
 /* Adds the isovalues of a CT that are in the range of its values. */
-static void add_tissues(facts *f, const cw_statistics *s)
+static void add_tissues(cli_info_facts *f, const cw_statistics *s)
 {
     if (!cli_is_hounsfield(&f->volume.whole, s))
         return;
     for (cli_level n = CLI_LEVEL_BONE; n <= CLI_LEVEL_METAL; n++) {
         const double value = cli_hounsfield_level(n);
         if (s->min < value && s->max >= value)
-            f->levels[f->level_count++] = (level){.name = cli_level_text(n, 0), .value = value};
+            f->levels[f->level_count++] =
+                (cli_info_level){.name = cli_level_text(n, 0), .value = value};
     }
 }
 
 /* otsu parts two classes; dark, medium and bright part four [Otsu1979, Liao2001]. */
-static cw_status find_levels(facts *f, int threads, cw_error *err)
+static cw_status find_levels(cli_info_facts *f, int threads, cw_error *err)
 {
     static const char *const names[] = {"otsu", "dark", "medium", "bright"};
     cw_statistics s;
-    double values[MAX_LEVELS + 1];
+    double values[CLI_INFO_LEVELS + 1];
     cw_status st = cw_volume_statistics(&f->volume.view, CLI_LEVEL_BINS, threads, &s, err);
     if (st != CW_OK)
         return st;
     int count = cw_statistics_otsu(&s, 1, values) ? 1 : 0;
-    if (count && cw_statistics_otsu(&s, MAX_LEVELS, values + 1))
-        count += MAX_LEVELS;
+    if (count && cw_statistics_otsu(&s, CLI_INFO_LEVELS, values + 1))
+        count += CLI_INFO_LEVELS;
     if (f->volume.whole.known & CW_KNOWN_LEVEL_SET)
-        f->levels[f->level_count++] = (level){.name = "zero", .value = 0};
+        f->levels[f->level_count++] = (cli_info_level){.name = "zero", .value = 0};
     for (int n = 0; n < count; n++)
         f->levels[f->level_count++] =
-            (level){.name = names[n], .value = cli_round_level(values[n])};
+            (cli_info_level){.name = names[n], .value = cli_round_level(values[n])};
     if (count)
         add_tissues(f, &s);
     cw_statistics_free(&s);
     return CW_OK;
 }
 
-static cw_status predict_surface(facts *f, int threads, cw_error *err)
+static cw_status predict_surface(cli_info_facts *f, int threads, cw_error *err)
 {
     cw_extractor *extractor;
     cw_status st = cw_extractor_new(&f->volume.view, &extractor, err);
@@ -171,7 +140,7 @@ static cw_status find_ranges(const info_args *args, const char *name, double (*r
     cw_status st = cw_volume_read(args->common.inputs[0], &desc, &all, NULL, err);
     if (st != CW_OK)
         return st;
-    for (size_t c = 0; c < all.components && c < MAX_COMPONENTS && st == CW_OK; c++) {
+    for (size_t c = 0; c < all.components && c < CLI_INFO_COMPONENTS && st == CW_OK; c++) {
         cw_statistics s = {0};
         st = cw_volume_select(&all, c, 0, &one, err);
         if (st == CW_OK)
@@ -183,22 +152,7 @@ static cw_status find_ranges(const info_args *args, const char *name, double (*r
     return st;
 }
 
-/* Arrays of one name, at points and at cells, cannot be told apart: the second has no range. */
-static bool is_reached(const facts *f, size_t n)
-{
-    for (size_t i = 0; i < f->array_count; i++)
-        if (i != n && strcmp(f->arrays[i].name, f->arrays[n].name) == 0 &&
-            f->arrays[n].of_cells && !f->arrays[i].of_cells)
-            return false;
-    return f->arrays[n].is_read;
-}
-
-static bool has_ranges(const facts *f, size_t n)
-{
-    return is_reached(f, n) && !isnan(f->ranges[n * MAX_COMPONENTS][0]);
-}
-
-static cw_status find_arrays(const info_args *args, facts *f, cw_error *err)
+static cw_status find_arrays(const info_args *args, cli_info_facts *f, cw_error *err)
 {
     const cw_read_desc desc = cli_read_desc(&args->input);
     if (args->input.raw)
@@ -211,17 +165,17 @@ static cw_status find_arrays(const info_args *args, facts *f, cw_error *err)
         f->array_count = 0;
         return st;
     }
-    f->ranges = calloc(f->array_count * MAX_COMPONENTS, sizeof *f->ranges);
+    f->ranges = calloc(f->array_count * CLI_INFO_COMPONENTS, sizeof *f->ranges);
     if (!f->ranges)
         return cwi_fail_memory(err);
     for (size_t n = 0; n < f->array_count && st == CW_OK; n++)
-        if (is_reached(f, n))
-            st = find_ranges(args, f->arrays[n].name, f->ranges + n * MAX_COMPONENTS, err);
+        if (cli_info_is_reached(f, n))
+            st = find_ranges(args, f->arrays[n].name, f->ranges + n * CLI_INFO_COMPONENTS, err);
     return st;
 }
 
 /* Predicts what `extract` takes. It comes last, as it may free the voxels. */
-static cw_status predict_extract(const info_args *args, size_t program_bytes, facts *f,
+static cw_status predict_extract(const info_args *args, size_t program_bytes, cli_info_facts *f,
                                  cw_error *err)
 {
     cli_numbers iso = args->iso;
@@ -246,7 +200,7 @@ static cw_status read_values(const char *path, cli_input *input, cli_volume *vol
     return cli_read_volume(path, input, false, volume, &other) == CW_OK ? CW_OK : st;
 }
 
-static cw_status find_facts(const info_args *args, facts *f, cw_error *err)
+static cw_status find_facts(const info_args *args, cli_info_facts *f, cw_error *err)
 {
     const int threads = (int)args->input.threads;
     const size_t program_bytes = cli_peak_bytes();
@@ -285,320 +239,6 @@ static cw_status find_facts(const info_args *args, facts *f, cw_error *err)
     st = predict_extract(args, program_bytes, f, err);
     cli_end_step("predict", &step);
     return st;
-}
-
-/* "left 0.00, posterior -1.00, ..." : the world direction that each index axis mostly
- * runs to. */
-static const char *axis_letters(const cw_volume *v)
-{
-    static char text[8];
-    for (int c = 0; c < 3; c++) {
-        int largest = 0;
-        for (int r = 1; r < 3; r++)
-            if (fabs(v->affine[r][c]) > fabs(v->affine[largest][c]))
-                largest = r;
-        text[c] = v->affine[largest][c] >= 0 ? "LPS"[largest] : "RAI"[largest];
-    }
-    return text;
-}
-
-static void print_steps(const cw_volume *v)
-{
-    if (v->step_seconds > 0)
-        printf("  steps    %zu, %.6g s apart\n", v->steps, v->step_seconds);
-    else
-        printf("  steps    %zu, no times named\n", v->steps);
-}
-
-/* Of a rectilinear grid: the steps that the line above gives the mean of. */
-static void print_spacing(const cli_volume *volume)
-{
-    double range[3][2];
-    if (!cwi_is_rectilinear(&volume->whole))
-        return;
-    for (int a = 0; a < 3; a++)
-        cli_spacing_range(volume, a, range[a]);
-    printf("  spacing  x %.6g to %.6g, y %.6g to %.6g, z %.6g to %.6g mm\n", range[0][0],
-           range[0][1], range[1][0], range[1][1], range[2][0], range[2][1]);
-}
-
-static const char *frame_of(const cw_volume *v)
-{
-    return v->known & CW_KNOWN_FRAME ? "LPS" : "not named, taken as LPS";
-}
-
-static void print_frame(const cli_volume *volume)
-{
-    const cw_volume *v = &volume->whole;
-    const double *s = volume->spacing;
-    const double last[3] = {(double)(v->dim[0] - 1), (double)(v->dim[1] - 1),
-                            (double)(v->dim[2] - 1)};
-    double from[3], to[3];
-    cw_volume_to_world(v, (const double[3]){0, 0, 0}, from);
-    cw_volume_to_world(v, last, to);
-    print_spacing(volume);
-    printf("  size     %.6g x %.6g x %.6g mm\n", last[0] * s[0], last[1] * s[1],
-           last[2] * s[2]);
-    printf("  frame    %s, axes run to %s; first voxel (%.6g, %.6g, %.6g), last (%.6g, %.6g, "
-           "%.6g)\n",
-           frame_of(v), axis_letters(v), from[0], from[1], from[2], to[0], to[1], to[2]);
-}
-
-/* Of an irregular grid, which has no axes. */
-static void print_box(const cli_volume *volume)
-{
-    const double *low = volume->grid.low, *high = volume->grid.high;
-    printf("  size     %.6g x %.6g x %.6g mm\n", high[0] - low[0], high[1] - low[1],
-           high[2] - low[2]);
-    printf("  cells    edges of %.6g mm on average\n", volume->spacing[0]);
-    printf("  frame    %s; box from (%.6g, %.6g, %.6g) to (%.6g, %.6g, %.6g)\n",
-           frame_of(&volume->whole), low[0], low[1], low[2], high[0], high[1], high[2]);
-}
-
-static void print_arrays(const facts *f)
-{
-    for (size_t n = 0; n < f->array_count; n++) {
-        const cw_array *a = &f->arrays[n];
-        printf("  array    '%s', %zu x %s%s%s", a->name, a->components,
-               *a->type ? a->type : "of a type that is not read",
-               a->of_cells ? ", of cells" : "",
-               !a->is_read     ? ", not read"
-               : a->is_default ? ", taken unless --array names another"
-                               : "");
-        for (size_t c = 0; c < a->components && has_ranges(f, n); c++) {
-            const double *r = f->ranges[n * MAX_COMPONENTS + c];
-            printf("%s %.6g to %.6g", c ? "," : ":", r[0], r[1]);
-        }
-        puts("");
-    }
-}
-
-static void json_arrays(cli_json *j, const facts *f)
-{
-    if (!f->array_count)
-        return;
-    cli_json_open(j, "arrays", '[');
-    for (size_t n = 0; n < f->array_count; n++) {
-        const cw_array *a = &f->arrays[n];
-        cli_json_open(j, NULL, '{');
-        cli_json_text(j, "name", a->name);
-        cli_json_text(j, "type", a->type);
-        cli_json_count(j, "components", a->components);
-        cli_json_text(j, "of", a->of_cells ? "cells" : "points");
-        cli_json_bool(j, "read", a->is_read);
-        cli_json_bool(j, "default", a->is_default);
-        if (has_ranges(f, n)) {
-            cli_json_open(j, "ranges", '[');
-            for (size_t c = 0; c < a->components; c++)
-                cli_json_numbers(j, NULL, f->ranges[n * MAX_COMPONENTS + c], 2);
-            cli_json_close(j, ']');
-        }
-        cli_json_close(j, '}');
-    }
-    cli_json_close(j, ']');
-}
-
-static void print_geometry(const facts *f)
-{
-    const cw_volume *v = &f->volume.whole;
-    printf("%s\n  %s\n", f->volume.path, cli_describe(&f->volume));
-    if (v->cells)
-        print_box(&f->volume);
-    else
-        print_frame(&f->volume);
-    if (v->steps > 1)
-        print_steps(v);
-    if (v->slope != 1 || v->intercept != 0)
-        printf("  scaling  value = %.10g * voxel + %.10g\n", v->slope, v->intercept);
-    if (f->series.images)
-        printf("  series   %s %s, %zu images, tilt %.3g degrees\n", f->series.label,
-               f->series.modality, f->series.images, f->series.tilt_degrees);
-    print_arrays(f);
-    cli_print_scales(&f->scales);
-    for (size_t n = 0; n < f->volume.note_count; n++)
-        if (!f->array_count ||
-            !strstr(f->volume.notes[n], "; --array takes")) /* listed above */
-            printf("  note     %s\n", f->volume.notes[n]);
-}
-
-static bool is_sampled(const facts *f)
-{
-    return cli_is_preview(&f->volume);
-}
-
-static void print_values(const info_args *args, const facts *f)
-{
-    const cw_statistics *r = &f->range;
-    const cw_label_ids *ids = &f->volume.ids;
-    if (ids->count > 1) {
-        const cw_label first = cw_label_ids_label(ids, 1),
-                       last = cw_label_ids_label(ids, (uint32_t)ids->count - 1);
-        char low[CW_LABEL_NUMBER], high[CW_LABEL_NUMBER];
-        printf("  values   numbers of labels, %s to %s", cw_label_number(&first, low),
-               cw_label_number(&last, high));
-    } else {
-        printf("  values   %.10g to %.10g", r->min, r->max);
-    }
-    if (f->volume.whole.steps > 1)
-        printf(" in step %zu", args->input.step);
-    if (r->not_finite)
-        printf(", %s not finite", cli_count(r->not_finite));
-    if (r->nodata)
-        printf(", %s no-data", cli_count(r->nodata));
-    if (is_sampled(f))
-        printf(" in one row of %zu, one slice of %zu (--deep reads all)", f->volume.coarsen[1],
-               f->volume.coarsen[2]);
-    puts("");
-    for (size_t b = 0; b < r->bin_count; b++)
-        printf("  %12.6g  %s\n", r->min + (double)b * r->bin_width,
-               cli_count((size_t)r->bins[b]));
-}
-
-static void print_levels(const facts *f, bool predicted)
-{
-    for (int n = 0; n < f->level_count; n++) {
-        const level *l = &f->levels[n];
-        printf("  level    %-7s--iso %.6g", l->name, l->value);
-        if (predicted)
-            printf("  %s triangles, STL %s", cli_count(l->triangles),
-                   cli_bytes((double)cli_stl_bytes(l->triangles)));
-        puts("");
-    }
-}
-
-static void json_series(cli_json *j, const cw_series *s)
-{
-    cli_json_text(j, "label", s->label);
-    cli_json_text(j, "modality", s->modality);
-    cli_json_count(j, "images", s->images);
-    if (s->status == CW_OK)
-        cli_json_number(j, "tilt_degrees", s->tilt_degrees);
-}
-
-/* Tells the range of values that are numbers of labels. */
-static void json_ids(cli_json *j, const cw_label_ids *ids)
-{
-    const uint32_t ends[2] = {0, (uint32_t)ids->count - 1};
-    cli_json_open(j, "range", '[');
-    for (int n = 0; n < 2; n++) {
-        const cw_label label = cw_label_ids_label(ids, ends[n]);
-        cli_json_label(j, NULL, &label);
-    }
-    cli_json_close(j, ']');
-}
-
-static void print_json(const facts *f, bool predicted)
-{
-    const cw_statistics *r = &f->range;
-    cli_json j = {.out = stdout};
-    cli_json_begin(&j, "cubewright-info-1");
-    cli_json_input(&j, "input", &f->volume);
-    if (f->series.images) {
-        cli_json_open(&j, "series", '{');
-        json_series(&j, &f->series);
-        cli_json_close(&j, '}');
-    }
-    json_arrays(&j, f);
-    cli_json_scales(&j, &f->scales);
-    cli_json_label_facts(&j, &f->labels);
-    cli_json_within(&j, &f->within);
-    if (f->volume.ids.count)
-        json_ids(&j, &f->volume.ids);
-    else
-        cli_json_numbers(&j, "range", (const double[2]){r->min, r->max}, 2);
-    if (is_sampled(f))
-        cli_json_numbers(
-            &j, "sampled",
-            (const double[3]){1, (double)f->volume.coarsen[1], (double)f->volume.coarsen[2]},
-            3);
-    cli_json_count(&j, "finite", r->finite);
-    cli_json_count(&j, "not_finite", r->not_finite);
-    cli_json_count(&j, "nodata", r->nodata);
-    if (r->bin_count) {
-        cli_json_number(&j, "bin_width", r->bin_width);
-        cli_json_open(&j, "histogram", '[');
-        for (size_t b = 0; b < r->bin_count; b++)
-            cli_json_count(&j, NULL, (size_t)r->bins[b]);
-        cli_json_close(&j, ']');
-    }
-    cli_json_open(&j, "levels", '[');
-    for (int n = 0; n < f->level_count; n++) {
-        cli_json_open(&j, NULL, '{');
-        cli_json_text(&j, "name", f->levels[n].name);
-        cli_json_number(&j, "iso", f->levels[n].value);
-        if (predicted)
-            cli_json_count(&j, "triangles", f->levels[n].triangles);
-        cli_json_close(&j, '}');
-    }
-    cli_json_close(&j, ']');
-    cli_json_predictions(&j, &f->predictions);
-    cli_json_close(&j, '}');
-}
-
-/* --- series ------------------------------------------------------------------------------- */
-
-static const char *shape_of(const cw_series *s)
-{
-    static char text[128];
-    double spacing[3];
-    const size_t *dim = s->shape.dim;
-    int n = snprintf(text, sizeof text, "%zu x %zu x %zu %s", dim[0], dim[1], dim[2],
-                     cw_type_name(s->shape.type));
-    if (s->status != CW_OK)
-        return text;
-    cw_volume_spacing(&s->shape, spacing);
-    if (s->shape.steps > 1)
-        n += snprintf(text + n, sizeof text - (size_t)n, ", %zu steps", s->shape.steps);
-    snprintf(text + n, sizeof text - (size_t)n, ", %.6g x %.6g x %.6g %s, tilt %.3g",
-             spacing[0], spacing[1], spacing[2],
-             s->shape.known & CW_KNOWN_UNIT ? "mm" : "(no unit)", s->tilt_degrees);
-    return text;
-}
-
-static void print_series(const cli_volume *notes, const cw_series *series, size_t count)
-{
-    printf("%s\n", notes->path);
-    for (size_t n = 0; n < count; n++) {
-        const cw_series *s = &series[n];
-        printf("  series %-6s %-4s %4zu images  %s%s%s\n", s->label, s->modality, s->images,
-               shape_of(s), s->finding[0] ? "\n    " : "",
-               cli_name_options(s->finding, (char[CLI_MESSAGE]){0}));
-    }
-    for (size_t n = 0; n < notes->note_count; n++)
-        printf("  note   %s\n", notes->notes[n]);
-}
-
-static void json_shape(cli_json *j, const cw_series *s)
-{
-    const double dims[3] = {(double)s->shape.dim[0], (double)s->shape.dim[1],
-                            (double)s->shape.dim[2]};
-    double spacing[3];
-    cli_json_numbers(j, "dims", dims, 3);
-    cli_json_text(j, "type", cw_type_name(s->shape.type));
-    if (s->status == CW_OK) {
-        cw_volume_spacing(&s->shape, spacing);
-        cli_json_numbers(j, "spacing", spacing, 3);
-        cli_json_count(j, "steps", s->shape.steps);
-    }
-    cli_json_text(j, "status", cw_status_name(s->status));
-    cli_json_message(j, "finding", s->finding);
-}
-
-static void print_series_json(const cli_volume *notes, const cw_series *series, size_t count)
-{
-    cli_json j = {.out = stdout};
-    cli_json_begin(&j, "cubewright-series-1");
-    cli_json_text(&j, "path", cli_shown_path(notes->path));
-    cli_json_open(&j, "series", '[');
-    for (size_t n = 0; n < count; n++) {
-        cli_json_open(&j, NULL, '{');
-        json_series(&j, &series[n]);
-        json_shape(&j, &series[n]);
-        cli_json_close(&j, '}');
-    }
-    cli_json_close(&j, ']');
-    cli_json_notes(&j, notes);
-    cli_json_close(&j, '}');
 }
 
 /* --- time series of files ----------------------------------------------------------------- */
@@ -720,7 +360,8 @@ static bool is_named(const cw_series *s, const char *name)
 }
 
 /* Several series, or one that cannot be read as it is, are listed and nothing more. */
-static cw_status list_series(const info_args *args, facts *f, bool *listed, cw_error *err)
+static cw_status list_series(const info_args *args, cli_info_facts *f, bool *listed,
+                             cw_error *err)
 {
     const char *path = args->common.inputs[0];
     cli_volume notes = {.path = path, .is_quiet = true};
@@ -741,9 +382,9 @@ static cw_status list_series(const info_args *args, facts *f, bool *listed, cw_e
     }
     *listed = count > 1 || (count == 1 && series[0].status != CW_OK);
     if (*listed && args->json)
-        print_series_json(&notes, series, count);
+        cli_json_all_series(&notes, series, count);
     else if (*listed)
-        print_series(&notes, series, count);
+        cli_print_series(&notes, series, count);
     cw_series_free(series);
     return st;
 }
@@ -751,7 +392,7 @@ static cw_status list_series(const info_args *args, facts *f, bool *listed, cw_e
 static cw_status run_info(void *p, cw_error *err)
 {
     info_args *args = p;
-    facts f = {0};
+    cli_info_facts f = {0};
     bool listed = false;
     cli_common silent = args->common;
     silent.quiet = true; /* the found line is part of the result here */
@@ -762,16 +403,10 @@ static cw_status run_info(void *p, cw_error *err)
     if (st != CW_OK || listed)
         return st;
     st = find_facts(args, &f, err);
-    if (st == CW_OK && args->json) {
-        print_json(&f, args->levels);
-    } else if (st == CW_OK) {
-        print_geometry(&f);
-        print_values(args, &f);
-        cli_print_label_facts(&f.labels, is_sampled(&f));
-        cli_print_within(&f.within);
-        print_levels(&f, args->levels);
-        cli_print_predictions(&f.predictions);
-    }
+    if (st == CW_OK && args->json)
+        cli_json_info(&f, args->levels);
+    else if (st == CW_OK)
+        cli_print_info(&f, args->input.step, args->levels);
     if (st == CW_OK)
         st = cli_expect_surfaces(&f.volume, &f.predictions, err);
     cw_statistics_free(&f.range);

@@ -156,8 +156,8 @@ cw_status cw_pipeline_run_labels(const cw_pipeline_labels *labels, const cw_pipe
     CWI_REQUIRE_VERSION(err, facts, 0);
     cwi_pipeline p = {.desc = desc, .labels = labels};
     cw_status st = cwi_begin_pipeline(&p, CW_SOURCE_LABELS, sink, err);
-    if (st == CW_OK && ((desc->simplify && desc->simplify->triangles) || desc->lod_count) && !labels->apart &&
-        !labels->interfaces_only) {
+    if (st == CW_OK && ((desc->simplify && desc->simplify->triangles) || desc->lod_count) &&
+        !labels->apart && !labels->interfaces_only) {
         p.full_labels = cwi_alloc_zeroed(labels->layer_count + 1, sizeof *p.full_labels);
         st = p.full_labels ? CW_OK : cwi_fail_memory(err);
     }

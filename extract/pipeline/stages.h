@@ -33,15 +33,15 @@ typedef struct cwi_pipeline {
     const cw_pipeline_labels *labels; /* or NULL */
     const cw_mesh *given;             /* the surface itself; or NULL */
     cw_mesh mesh;
-    cw_mesh_spool *spool;        /* the surface, of slices; or NULL */
-    cw_mesh full;                /* with maps: the surface before it was simplified */
+    cw_mesh_spool *spool;           /* the surface, of slices; or NULL */
+    cw_mesh full;                   /* with maps: the surface before it was simplified */
     cw_label_surfaces *full_labels; /* of each layer, before it was simplified; or NULL */
-    cw_mesh *levels;             /* lod_count; NULL: there is one surface */
-    cw_image maps[CW_MAP_COUNT]; /* of CW_STAGE_MAPS */
-    bool is_simplified;          /* while it was extracted */
-    bool is_checked;             /* the same */
-    bool needs_whole;            /* before it is simplified */
-    bool adds_normals;           /* those of the field, to finished surfaces */
+    cw_mesh *levels;                /* lod_count; NULL: there is one surface */
+    cw_image maps[CW_MAP_COUNT];    /* of CW_STAGE_MAPS */
+    bool is_simplified;             /* while it was extracted */
+    bool is_checked;                /* the same */
+    bool needs_whole;               /* before it is simplified */
+    bool adds_normals;              /* those of the field, to finished surfaces */
     /* Makes the surface without what simplifies, colours or measures it. mesh: filled on success */
     cw_status (*make_full)(const struct cwi_pipeline *p, const cw_volume *volume,
                            bool no_normals, cw_mesh *mesh, cw_error *err);

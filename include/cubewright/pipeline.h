@@ -149,7 +149,8 @@ typedef struct cw_pipeline_surface {
     size_t level;         /* of detail, from 0 */
     size_t layer;         /* of labels, from 0 */
     uint32_t label;       /* of labels: whose surface it is */
-    cw_mesh *full; /* of levels, with maps, and of simplified labels: the surface that it was made of; else NULL */
+    cw_mesh *
+        full; /* of levels, with maps, and of simplified labels: the surface that it was made of; else NULL */
     /* CW_MAP_COUNT images, of the surface or of all its levels. Those that were not
      * baked have no pixels. Borrowed until the pipeline ends; NULL: there are none */
     const cw_image *maps;
