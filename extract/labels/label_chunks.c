@@ -22,12 +22,6 @@ typedef struct scan {
     cwi_key_count *last;
 } scan;
 
-/* Returns the number of vertices of a cube. */
-static size_t count_vertices(uint8_t shape)
-{
-    return shape == CWI_CUBE_SIMPLE ? 1 : (size_t)cwi_count_bits(shape);
-}
-
 /* Marks the cubes of a row whose corners are not all alike. */
 static void mark_row(const scan *s, size_t y)
 {
@@ -53,8 +47,37 @@ static void load_corners(const scan *s, size_t x, size_t y, uint32_t corners[8])
     }
 }
 
+/* Finds the axes along which a cube is partly beyond the volume. Returns its corners that are beyond,
+ * as bits; none where borders are open. */
+static uint32_t find_outside(const scan *s, size_t n, size_t k, bool beyond[3])
+{
+    const size_t at[3] = {n % s->width, n / s->width, k},
+                 end[3] = {s->width - 1, s->height - 1, s->job->layers.count - 2};
+    static const uint32_t upper[3] = {0xaa, 0xcc, 0xf0};
+    uint32_t outside = 0;
+    for (int a = 0; a < 3; a++) {
+        const uint32_t corners =
+            (at[a] == 0 ? 0xff & ~upper[a] : 0) | (at[a] == end[a] ? upper[a] : 0);
+        beyond[a] = corners && !s->job->layers.copies_border;
+        outside |= beyond[a] ? corners : 0;
+    }
+    return outside;
+}
+
+/* Returns the axis along which a cube that cannot be one point is two prisms, or -1: at the volume's
+ * border, where the half beyond has one label. So all vertices there are in one plane. */
+static int find_prism_axis(const scan *s, size_t n, size_t k)
+{
+    bool beyond[3];
+    find_outside(s, n, k, beyond);
+    for (int a = 0; a < 3; a++)
+        if (beyond[a])
+            return a;
+    return -1;
+}
+
 /* Finds the shapes of the upper layer of cubes, and numbers their vertices. */
-static void shape_layer(scan *s)
+static void shape_layer(scan *s, size_t k)
 {
     uint32_t corners[8];
     memset(s->shapes[1], 0, s->width * s->height);
@@ -65,9 +88,13 @@ static void shape_layer(scan *s)
                 continue;
             const size_t n = y * s->width + x;
             load_corners(s, x, y, corners);
-            s->shapes[1][n] = cwi_label_cube(&s->job->rules, corners);
+            uint8_t shape = cwi_label_cube(&s->job->rules, corners);
+            const int axis = shape == CWI_CUBE_SIMPLE ? -1 : find_prism_axis(s, n, k);
+            if (axis >= 0)
+                shape = (uint8_t)(CWI_CUBE_PRISMS | axis);
+            s->shapes[1][n] = shape;
             s->firsts[1][n] = (uint32_t)s->next;
-            s->next += count_vertices(s->shapes[1][n]);
+            s->next += cwi_label_cube_vertices(shape);
         }
     }
 }
@@ -78,11 +105,8 @@ static uint32_t vertex_of(const scan *s, const cwi_label_ring *ring, int n, size
     const int8_t *cube = ring->cube[n];
     const size_t index = (y - (cube[1] < 0)) * s->width + x - (cube[0] < 0);
     const int layer = cube[2] < 0 ? 0 : 1;
-    const uint8_t shape = s->shapes[layer][index];
-    const uint32_t first = s->firsts[layer][index];
-    return shape == CWI_CUBE_SIMPLE
-               ? first
-               : first + (uint32_t)cwi_count_bits(shape & ((1u << ring->tet[n]) - 1));
+    return s->firsts[layer][index] +
+           cwi_label_cube_vertex(&s->job->rules, s->shapes[layer][index], ring->tet[n]);
 }
 
 /* Finds the polygon around an edge that starts at the corner 0 of a cube. Tetrahedra with the
@@ -187,8 +211,9 @@ static void mark_kind(uint8_t *kind, bool is_curve, int bit)
 }
 
 /* Tells a cube and the one before it along an axis that they are neighbours, if the face
- * between them is part of an interface; and if three labels meet there. */
-static void join_cubes(const scan *s, size_t n, int axis)
+ * between them is part of an interface; and if three labels meet there. The outside counts as a
+ * label of its own: so the edges of the surface that closes a label at the border are curves. */
+static void join_cubes(const scan *s, size_t n, int axis, uint32_t outside)
 {
     const size_t back[3] = {1, s->width, 0};
     const int layer = axis == 2 ? 0 : 1;
@@ -197,20 +222,45 @@ static void join_cubes(const scan *s, size_t n, int axis)
     uint32_t c[8];
     load_corners(s, n % s->width, n / s->width, c);
     const int u = 1 << (axis + 1) % 3, v = 1 << (axis + 2) % 3;
-    const uint32_t around[4] = {c[0], c[u], c[u | v], c[v]};
-    int changes = 0;
-    for (int i = 0; i < 4; i++)
-        changes += around[i] != around[(i + 1) % 4];
+    const int around[4] = {0, u, u | v, v};
+    int changes = 0, meetings = 0;
+    for (int i = 0; i < 4; i++) {
+        const int a = around[i], b = around[(i + 1) % 4];
+        changes += c[a] != c[b];
+        meetings += c[a] != c[b] || (outside >> a & 1) != (outside >> b & 1);
+    }
     if (changes == 0)
         return;
     const uint32_t here = s->firsts[1][n], there = s->firsts[layer][other];
     if (s->shapes[1][n] == CWI_CUBE_SIMPLE) {
         net->neighbours[here][axis] = there;
-        mark_kind(&net->kinds[here], changes > 2, axis);
+        mark_kind(&net->kinds[here], meetings > 2, axis);
     }
     if (s->shapes[layer][other] == CWI_CUBE_SIMPLE) {
         net->neighbours[there][axis + 3] = here;
-        mark_kind(&net->kinds[there], changes > 2, axis + 3);
+        mark_kind(&net->kinds[there], meetings > 2, axis + 3);
+    }
+}
+
+/* Places the vertices of a cube: each in the middle of its tetrahedra's. */
+static void put_cube(const scan *s, uint8_t shape, const double middle[3], uint32_t first)
+{
+    double sums[CWI_TETS][3] = {0};
+    int counts[CWI_TETS] = {0};
+    const bool is_whole = shape & (CWI_CUBE_SIMPLE | CWI_CUBE_PRISMS);
+    for (int t = 0; t < CWI_TETS; t++) {
+        const uint32_t v = cwi_label_cube_vertex(&s->job->rules, shape, t);
+        if (!is_whole && !(shape >> t & 1))
+            continue;
+        for (int a = 0; a < 3; a++)
+            sums[v][a] += s->job->corners[t][a];
+        counts[v]++;
+    }
+    for (uint32_t v = 0; v < cwi_label_cube_vertices(shape); v++) {
+        double position[3];
+        for (int a = 0; a < 3; a++)
+            position[a] = middle[a] + sums[v][a] / counts[v];
+        put_vertex(s->job, position, first + v);
     }
 }
 
@@ -220,26 +270,23 @@ static void put_vertices(const scan *s, size_t k)
         const uint8_t shape = s->shapes[1][n];
         const double middle[3] = {(double)(n % s->width) - 0.5, (double)(n / s->width) - 0.5,
                                   (double)k - 0.5};
-        uint32_t number = s->firsts[1][n];
+        const uint32_t number = s->firsts[1][n];
         if (!shape)
             continue;
         if (shape == CWI_CUBE_SIMPLE)
             put_vertex(s->job, middle, number);
-        if (s->job->net.kinds) {
-            const bool has_below[3] = {n % s->width > 0, n / s->width > 0, k > 0};
-            for (size_t v = 0; v < count_vertices(shape) && shape != CWI_CUBE_SIMPLE; v++)
-                s->job->net.kinds[number + v] = CWI_NET_FIXED;
-            for (int a = 0; a < 3; a++)
-                if (has_below[a])
-                    join_cubes(s, n, a);
-        }
-        for (int t = 0; t < CWI_TETS && shape != CWI_CUBE_SIMPLE; t++) {
-            const double *c = s->job->corners[t];
-            if (shape >> t & 1)
-                put_vertex(s->job,
-                           (double[3]){middle[0] + c[0], middle[1] + c[1], middle[2] + c[2]},
-                           number++);
-        }
+        else
+            put_cube(s, shape, middle, number);
+        if (!s->job->net.kinds)
+            continue;
+        bool beyond[3];
+        const uint32_t outside = find_outside(s, n, k, beyond);
+        const bool has_below[3] = {n % s->width > 0, n / s->width > 0, k > 0};
+        for (size_t v = 0; v < cwi_label_cube_vertices(shape) && shape != CWI_CUBE_SIMPLE; v++)
+            s->job->net.kinds[number + v] = CWI_NET_FIXED;
+        for (int a = 0; a < 3; a++)
+            if (has_below[a])
+                join_cubes(s, n, a, outside);
     }
 }
 
@@ -286,14 +333,14 @@ static bool scan_chunk(scan *s, size_t first, size_t end)
             break;
         if (k < first) { /* its vertices end where the chunk's begin */
             s->next = 0;
-            shape_layer(s);
+            shape_layer(s, k);
             const uint32_t shift = (uint32_t)(s->chunk->vertices - s->next);
             for (size_t n = 0; n < s->width * s->height; n++)
                 s->firsts[1][n] += shift;
             s->next = s->chunk->vertices;
             continue;
         }
-        shape_layer(s);
+        shape_layer(s, k);
         is_well = take_layer(s, k);
         if (j->is_writing)
             put_vertices(s, k);

@@ -17,6 +17,19 @@ static void make_tets(uint8_t tets[CWI_TETS])
                 tets[count++] = (uint8_t)(1 | 1 << (1 << a) | 1 << (1 << a | 1 << b) | 1 << 7);
 }
 
+/* Splits the cube into two prisms along each axis, of three tetrahedra each: on the sides of its
+ * diagonal plane. The second one has those with the corner along the axis after it, alone or with the
+ * first axis. */
+static void make_prisms(const uint8_t tets[CWI_TETS], uint8_t prisms[3])
+{
+    for (int axis = 0; axis < 3; axis++)
+        for (int t = 0; t < CWI_TETS; t++) {
+            const int corner = 1 << (axis + 1) % 3;
+            if (tets[t] >> corner & 1 || tets[t] >> (corner | 1 << axis) & 1)
+                prisms[axis] |= (uint8_t)(1 << t);
+        }
+}
+
 /* Returns true if an edge of tetrahedra joins two corners: one rises from the other. */
 static bool is_edge(int a, int b)
 {
@@ -135,6 +148,7 @@ void cwi_label_rules_make(cwi_label_rules *r)
 {
     memset(r, 0, sizeof *r);
     make_tets(r->tets);
+    make_prisms(r->tets, r->prisms);
     for (int n = 0; n < 256; n++)
         r->is_simple[n] = is_connected(n) && is_connected(WHOLE & ~n) && !has_split_face(n);
     for (int edge = 1; edge < 8; edge++)

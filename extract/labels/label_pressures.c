@@ -1,5 +1,4 @@
-/* Gives labels the volumes of their voxels. Directions of vertices in one patch are computed once,
- * and those of vertices on curves in each round.
+/* Gives labels the volumes of their voxels. Directions of vertices are computed once.
  * Source  conjugate gradients [Hestenes1952], on a graph of labels whose edges are interfaces */
 #include "extract/labels/label_pressures.h"
 
@@ -59,9 +58,10 @@ typedef struct volume_solver {
     double *pressures;     /* 4 x (labels + 1) numbers to solve with; these come first */
     direction *directions; /* of vertices */
     size_t curve_count;
-    uint32_t *curve;   /* vertices on curves */
-    float (*moves)[3]; /* of those */
-    bool is_first;     /* round */
+    uint32_t *curve;         /* vertices on curves */
+    size_t *curve_firsts;    /* curve_count + 1: where a vertex's part of `shares` begins */
+    direction *curve_shares; /* of a vertex on a curve in each of its patches */
+    bool is_first;           /* round */
 } volume_solver;
 
 /* Computes a triangle's normal on the outside, as long as twice its area. */
@@ -112,17 +112,27 @@ static void measure_patch(void *context, size_t n)
     s->areas[n] = areas / 2;
 }
 
+/* Returns true if a vertex closes a label at the volume's border: it stays in that plane. */
+static bool is_held(const volume_solver *s, size_t v, int axis)
+{
+    const float original = s->originals[3 * v + (size_t)axis];
+    return original < 0 || original > (float)s->dim[axis] - 1;
+}
+
 /* Sums up how far apart the normals around vertices are: a vertex in a corner of three faces moves
- * each by a third of its own way. */
+ * each by a third of its own way. Normals lose what would lead out of the border's plane. */
 static void measure_alignments(const volume_solver *s)
 {
     for (size_t v = 0; v < s->surfaces->mesh.vertex_count; v++) {
-        const direction *d = &s->directions[v];
+        direction *d = &s->directions[v];
         if (s->net->kinds[v] || !(d->area > 0))
             continue;
         double normal_sq = 0;
-        for (int a = 0; a < 3; a++)
+        for (int a = 0; a < 3; a++) {
+            if (is_held(s, v, a))
+                d->normal[a] = 0;
             normal_sq += (double)d->normal[a] * (double)d->normal[a];
+        }
         s->alignments[d->patch][0] += normal_sq / (double)d->area;
         s->alignments[d->patch][1] += (double)d->area;
     }
@@ -206,20 +216,24 @@ static size_t find_patch(const cw_label_surfaces *f, size_t triangle)
     return low;
 }
 
-/* Finds the move of a vertex on a curve, from the triangles around it. */
-static void find_curve_move(const volume_solver *s, uint32_t vertex, float move[3])
+/* Finds the patches of a vertex on a curve, which rise. Returns their number; the shares of the
+ * vertex in them are summed up where `shares` is not NULL, and zeroed. */
+static size_t find_curve_shares(const volume_solver *s, uint32_t vertex, direction *shares)
 {
     const cwi_label_net *net = s->net;
     const cw_label_surfaces *f = s->surfaces;
-    double sum[3] = {0}, area = 0, difference = 0;
-    size_t patch_end = 0;
+    size_t patch_end = 0, count = 0;
     for (uint32_t k = net->firsts[vertex]; k < net->firsts[vertex + 1]; k++) {
-        const size_t end = cwi_polygon_end(net, &f->mesh, net->around[k]);
         if (net->around[k] >= patch_end) { /* they rise */
             const size_t patch = find_patch(f, net->around[k]);
             patch_end = f->patches[patch].first + f->patches[patch].count;
-            difference = pressure_difference(s, patch);
+            count++;
+            if (shares)
+                shares[count - 1].patch = (uint32_t)patch;
         }
+        if (!shares)
+            continue;
+        const size_t end = cwi_polygon_end(net, &f->mesh, net->around[k]);
         for (size_t t = net->around[k]; t < end; t++) {
             const uint32_t *v = f->mesh.triangles + 3 * t;
             double normal[3];
@@ -227,19 +241,46 @@ static void find_curve_move(const volume_solver *s, uint32_t vertex, float move[
                 continue;
             find_normal(s, t, normal);
             for (int a = 0; a < 3; a++)
-                sum[a] += difference * normal[a];
-            area += cwi_length(normal);
+                shares[count - 1].normal[a] += (float)normal[a];
+            shares[0].area += (float)cwi_length(normal);
         }
     }
-    for (int a = 0; a < 3; a++)
-        move[a] = area > 0 ? (float)(sum[a] / area) : 0;
+    return count;
 }
 
-static void find_curve_part(void *context, size_t n)
+static void count_curve_part(void *context, size_t n)
 {
     const volume_solver *s = context;
     for (size_t i = n * CURVE_PART; i < (n + 1) * CURVE_PART && i < s->curve_count; i++)
-        find_curve_move(s, s->curve[i], s->moves[i]);
+        s->curve_firsts[i + 1] = find_curve_shares(s, s->curve[i], NULL);
+}
+
+static void fill_curve_part(void *context, size_t n)
+{
+    const volume_solver *s = context;
+    for (size_t i = n * CURVE_PART; i < (n + 1) * CURVE_PART && i < s->curve_count; i++)
+        find_curve_shares(s, s->curve[i], s->curve_shares + s->curve_firsts[i]);
+}
+
+static cw_status run_curves(volume_solver *s, void (*work)(void *, size_t),
+                            const cw_labels_desc *desc, cw_error *err)
+{
+    return cwi_parallel_for((s->curve_count + CURVE_PART - 1) / CURVE_PART, 32 * CURVE_PART,
+                            desc->threads, &desc->progress, "keeping volumes", work, s, err);
+}
+
+/* Finds the shares of all vertices on curves, once: the first holds the area of all. */
+static cw_status measure_curves(volume_solver *s, const cw_labels_desc *desc, cw_error *err)
+{
+    s->curve_firsts[0] = 0;
+    cw_status st = run_curves(s, count_curve_part, desc, err);
+    if (st != CW_OK)
+        return st;
+    for (size_t i = 0; i < s->curve_count; i++)
+        s->curve_firsts[i + 1] += s->curve_firsts[i];
+    s->curve_shares =
+        cwi_alloc_zeroed(s->curve_firsts[s->curve_count], sizeof *s->curve_shares);
+    return s->curve_shares ? run_curves(s, fill_curve_part, desc, err) : cwi_fail_memory(err);
 }
 
 static void move_vertex(const volume_solver *s, size_t v, const float move[3])
@@ -248,7 +289,26 @@ static void move_vertex(const volume_solver *s, size_t v, const float move[3])
     const float *o = s->originals + 3 * v;
     for (int a = 0; a < 3; a++) {
         const float low = o[a] - s->bound, high = o[a] + s->bound, to = p[a] + move[a];
-        p[a] = to < low ? low : to > high ? high : to;
+        if (!is_held(s, v, a))
+            p[a] = to < low ? low : to > high ? high : to;
+    }
+}
+
+static void move_curve_part(void *context, size_t n)
+{
+    const volume_solver *s = context;
+    for (size_t i = n * CURVE_PART; i < (n + 1) * CURVE_PART && i < s->curve_count; i++) {
+        const direction *shares = s->curve_shares + s->curve_firsts[i];
+        const size_t count = s->curve_firsts[i + 1] - s->curve_firsts[i];
+        float move[3] = {0};
+        if (count == 0 || !(shares[0].area > 0))
+            continue;
+        for (size_t k = 0; k < count; k++) {
+            const float by = (float)pressure_difference(s, shares[k].patch) / shares[0].area;
+            for (int a = 0; a < 3; a++)
+                move[a] += by * shares[k].normal[a];
+        }
+        move_vertex(s, s->curve[i], move);
     }
 }
 
@@ -268,14 +328,10 @@ static void move_part(void *context, size_t n)
 static cw_status move_all(volume_solver *s, const cw_labels_desc *desc, cw_error *err)
 {
     const size_t vertices = s->surfaces->mesh.vertex_count;
-    cw_status st = cwi_parallel_for((s->curve_count + CURVE_PART - 1) / CURVE_PART,
-                                    32 * CURVE_PART, desc->threads, &desc->progress,
-                                    "keeping volumes", find_curve_part, s, err);
+    cw_status st = run_curves(s, move_curve_part, desc, err);
     if (st == CW_OK)
         st = cwi_parallel_for((vertices + PART - 1) / PART, PART, desc->threads,
                               &desc->progress, "keeping volumes", move_part, s, err);
-    for (size_t i = 0; i < s->curve_count && st == CW_OK; i++)
-        move_vertex(s, s->curve[i], s->moves[i]);
     return st;
 }
 
@@ -329,27 +385,33 @@ static void scale_deficits(const volume_solver *s)
     }
 }
 
-/* Puts vertices of labels of a few voxels that lie in one other label, and still lack too much, back
- * to where they were: there they have their volume. Smoothing had made them flat. */
-static void restore_small(const volume_solver *s)
+/* Puts a vertex back to where it was if its patch is around a label of a few voxels that lies in one
+ * other label, and still lacks too much: there it has its volume. Smoothing had made it flat. */
+static void restore_vertex(const volume_solver *s, size_t v, size_t patch)
 {
     const cw_label_surfaces *f = s->surfaces;
     const double *deficit = s->pressures + s->labels + 1;
+    for (int side = 0; side < 2; side++) {
+        const uint32_t label = s->sides[patch][side];
+        if (label < s->labels && s->patch_counts[label] == 1 &&
+            f->labels[label].voxels <= SMALL &&
+            fabs(deficit[label]) > MAX_SMALL_DEFICIT * (double)f->labels[label].voxels)
+            memcpy(f->mesh.positions + 3 * v, s->originals + 3 * v, 3 * sizeof(float));
+    }
+}
+
+static void restore_small(const volume_solver *s)
+{
+    const cw_label_surfaces *f = s->surfaces;
     for (size_t n = 0; n < f->patch_count; n++)
         for (int side = 0; side < 2; side++)
             s->patch_counts[s->sides[n][side]]++;
-    for (size_t v = 0; v < f->mesh.vertex_count; v++) {
-        const direction *d = &s->directions[v];
-        if (s->net->kinds[v] || !(d->area > 0))
-            continue;
-        for (int side = 0; side < 2; side++) {
-            const uint32_t label = s->sides[d->patch][side];
-            if (label < s->labels && s->patch_counts[label] == 1 &&
-                f->labels[label].voxels <= SMALL &&
-                fabs(deficit[label]) > MAX_SMALL_DEFICIT * (double)f->labels[label].voxels)
-                memcpy(f->mesh.positions + 3 * v, s->originals + 3 * v, 3 * sizeof(float));
-        }
-    }
+    for (size_t v = 0; v < f->mesh.vertex_count; v++)
+        if (!s->net->kinds[v] && s->directions[v].area > 0)
+            restore_vertex(s, v, s->directions[v].patch);
+    for (size_t i = 0; i < s->curve_count && s->curve_shares; i++)
+        if (s->curve_firsts[i + 1] - s->curve_firsts[i] == 1) /* the edge of a cap */
+            restore_vertex(s, s->curve[i], s->curve_shares[s->curve_firsts[i]].patch);
 }
 
 static cw_status restore_volumes(volume_solver *s, const cw_labels_desc *desc, cw_error *err)
@@ -363,8 +425,12 @@ static cw_status restore_volumes(volume_solver *s, const cw_labels_desc *desc, c
                               "keeping volumes", measure_patch, s, err);
         if (st != CW_OK || find_volume_deficits(s) || round == ROUNDS)
             break;
-        if (s->is_first)
+        if (s->is_first) {
             measure_alignments(s);
+            st = measure_curves(s, desc, err);
+            if (st != CW_OK)
+                break;
+        }
         scale_areas(s);
         scale_deficits(s);
         solve_pressures(s);
@@ -393,9 +459,9 @@ static bool prepare_solver(volume_solver *s)
     s->sides = cwi_alloc_array(f->patch_count, sizeof *s->sides);
     s->pressures = cwi_alloc_zeroed(4 * (s->labels + 1), sizeof *s->pressures);
     s->curve = cwi_alloc_array(s->curve_count, sizeof *s->curve);
-    s->moves = cwi_alloc_array(s->curve_count, sizeof *s->moves);
+    s->curve_firsts = cwi_alloc_array(s->curve_count + 1, sizeof *s->curve_firsts);
     if (!s->directions || !s->volumes || !s->areas || !s->alignments || !s->requests ||
-        !s->patch_counts || !s->sides || !s->pressures || !s->curve || !s->moves)
+        !s->patch_counts || !s->sides || !s->pressures || !s->curve || !s->curve_firsts)
         return false;
     memset(s->directions, 0, vertices * sizeof *s->directions);
     s->curve_count = 0;
@@ -429,6 +495,7 @@ cw_status cwi_labels_keep_volumes(cwi_label_net *net, const float *originals,
     cwi_free(s.sides);
     cwi_free(s.pressures);
     cwi_free(s.curve);
-    cwi_free(s.moves);
+    cwi_free(s.curve_firsts);
+    cwi_free(s.curve_shares);
     return st;
 }

@@ -8,6 +8,7 @@
 #include "core/base/parallel.h"
 #include "core/base/status.h"
 
+#include <math.h>
 #include <string.h>
 
 enum { ROUND_PAIRS = 8, PART = 1 << 14 };
@@ -80,10 +81,11 @@ static lanes average_vertex(const averager *s, size_t v)
     lanes to = here + MEAN_WEIGHT * (sum / (float)count - here);
     to = select_lanes(to < low, low, to);
     to = select_lanes(to > high, high, to);
-    for (int a = 0; a < 3 && s->desc->leave_open; a++) /* an open border stays */
-        if (original[a] < 0 || original[a] > (float)s->dim[a] - 1)
-            to[a] = original[a];
-    return to;
+    /* The surface that closes a label at the volume's border stays in its plane, and an open border
+     * stays where it is. */
+    const lanes last = {(float)s->dim[0] - 1, (float)s->dim[1] - 1, (float)s->dim[2] - 1,
+                        INFINITY};
+    return select_lanes((original < 0) | (original > last), original, to);
 }
 
 static void average_part(void *context, size_t n)

@@ -61,13 +61,17 @@ typedef struct cw_label_surfaces {
  * label are joined if an edge of tetrahedra joins them: along an axis, or along a diagonal that
  * rises along two or three axes. Across the other diagonals they are apart. Where a cube of
  * tetrahedra can be one point without a change of topology, it is: then the surface is that of
- * surface nets, with a vertex in the middle of the cube.
+ * surface nets, with a vertex in the middle of the cube. At the volume's border other cubes are two
+ * prisms, with a vertex each.
  *
  * Smoothing moves vertices towards the mean of those in the cubes beside, 16 times, and those
  * on curves where three labels meet along the curves, each within max_move of where it was. Then
  * pressures, which move each interface along its normal by the difference of its labels'
  * pressures, preserve the volume of every label's voxels, except for open borders. Where
  * triangles would cross, vertices go back. In cubes with more than one vertex they stay.
+ *
+ * Where a label reaches the volume's border, a cap closes it half a voxel beyond: flat, with straight
+ * edges and sharp corners, so that those of neighbouring crops lie in one plane.
  *
  * Vertices are in the world (LPS, millimetres).
  *
