@@ -17,6 +17,8 @@
  * polygons are sound: two of them meet in common sides and vertices only. */
 #include "extract/labels/label_crossings.h"
 
+#include "extract/labels/label_planes.h"
+
 #include "core/base/memory.h"
 #include "core/base/parallel.h"
 #include "core/base/status.h"
@@ -173,25 +175,30 @@ static void test_pair(cwi_label_crossings *c, size_t s, size_t t)
 }
 
 /* Tests the triangles of a polygon: with each other, and whether they have an area. */
-static void test_inside(cwi_label_crossings *c, size_t polygon)
+static void test_inside(cwi_label_crossings *c, size_t polygon, cwi_label_planes *planes)
 {
-    const size_t end = cwi_polygon_end(c->net, c->mesh, polygon);
-    for (size_t s = polygon; s < end; s++) {
-        const uint32_t *v = corners_of(c, s);
-        if (!all_back(c, v) && !cwi_has_area(c->mesh->positions, v))
+    const size_t count = (size_t)planes->count - 2;
+    const uint64_t pairs = cwi_label_planes_pairs(planes, planes);
+    for (size_t s = 0; s < count; s++) {
+        const uint32_t *v = corners_of(c, polygon + s);
+        if (!cwi_label_planes_has_area(planes, (int)s) && !all_back(c, v) &&
+            !cwi_has_area(c->mesh->positions, v))
             hit_triangle(c, v);
-        for (size_t t = s + 1; t < end; t++)
-            test_pair(c, s, t);
+        for (size_t t = s + 1; t < count; t++)
+            if (pairs >> (8 * s + t) & 1)
+                test_pair(c, polygon + s, polygon + t);
     }
 }
 
-static void test_polygons(cwi_label_crossings *c, size_t one, size_t other)
+static void test_polygons(cwi_label_crossings *c, size_t one, cwi_label_planes *planes,
+                          size_t other)
 {
-    const size_t end = cwi_polygon_end(c->net, c->mesh, one),
-                 other_end = cwi_polygon_end(c->net, c->mesh, other);
-    for (size_t s = one; s < end; s++)
-        for (size_t t = other; t < other_end; t++)
-            test_pair(c, s, t);
+    cwi_label_planes others;
+    cwi_label_planes_load(&others, c->net, c->mesh, other);
+    const uint64_t pairs = cwi_label_planes_pairs(planes, &others);
+    for (size_t n = 0; pairs >> n && n < 64; n++)
+        if (pairs >> n & 1)
+            test_pair(c, one + n / 8, other + n % 8);
 }
 
 /* Returns true if two vertices are in one cube. */
@@ -206,13 +213,14 @@ static bool share_cube(const cwi_label_crossings *c, uint32_t v, uint32_t w)
  * cubes around its edge. Vertices of one cube follow each other. */
 static void test_around(cwi_label_crossings *c, size_t polygon)
 {
-    uint32_t corners[CWI_POLYGON_CORNERS], seen[SEEN];
+    cwi_label_planes planes;
+    uint32_t seen[SEEN];
     const uint8_t flags = c->flags[polygon];
-    const int count = list_corners(c, polygon, corners);
     int seen_count = 0;
-    test_inside(c, polygon);
-    for (int n = 0; n < count; n++) {
-        uint32_t first = corners[n], end = first + 1;
+    cwi_label_planes_load(&planes, c->net, c->mesh, polygon);
+    test_inside(c, polygon, &planes);
+    for (int n = 0; n < planes.count; n++) {
+        uint32_t first = planes.corners[n], end = first + 1;
         while (first > 0 && share_cube(c, first - 1, first))
             first--;
         while (end < c->mesh->vertex_count && share_cube(c, end, first))
@@ -221,14 +229,16 @@ static void test_around(cwi_label_crossings *c, size_t polygon)
             const uint32_t other = c->net->around[k];
             const uint8_t its = c->flags[other];
             int i = 0;
+            if (other == polygon || (its & flags & CWI_POLYGON_SOUND) ||
+                (its & CWI_POLYGON_QUEUED && other < polygon)) /* it tests this one */
+                continue;
             while (i < seen_count && seen[i] != other)
                 i++;
-            if (i < seen_count || other == polygon || (its & flags & CWI_POLYGON_SOUND) ||
-                (its & CWI_POLYGON_QUEUED && other < polygon)) /* it tests this one */
+            if (i < seen_count)
                 continue;
             if (seen_count < SEEN)
                 seen[seen_count++] = other;
-            test_polygons(c, polygon, other);
+            test_polygons(c, polygon, &planes, other);
         }
     }
 }
