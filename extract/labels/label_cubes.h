@@ -20,6 +20,12 @@ typedef struct cwi_label_ring {
     uint8_t tet[CWI_RING];
 } cwi_label_ring;
 
+/* The cubes around an edge, in the order of its ring. */
+typedef struct cwi_label_edge_cubes {
+    int count;
+    int8_t cube[4][3]; /* as in a ring */
+} cwi_label_edge_cubes;
+
 /* Facts that follow from the definition of the tetrahedra. Bit a of a corner's number is its
  * place along axis a; sets of corners are bits of a byte. */
 typedef struct cwi_label_rules {
@@ -28,6 +34,7 @@ typedef struct cwi_label_rules {
      * surface, nor touches a face of the cube with two corners that are apart. */
     bool is_simple[256];
     cwi_label_ring rings[CWI_EDGES]; /* of the edge from corner 0 to corner n; none of 0 */
+    cwi_label_edge_cubes around[CWI_EDGES];
     uint8_t prisms[3]; /* tetrahedra of the second of two prisms along an axis, as bits */
 } cwi_label_rules;
 
