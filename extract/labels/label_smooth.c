@@ -1,10 +1,7 @@
 /* Smooths the interfaces of a label map: rounds of averages with the cubes beside, in a box around
- * each vertex [Gibson1998]; then pressures keep the volumes of labels. */
+ * each vertex [Gibson1998]. */
 #include "extract/labels/label_smooth.h"
 
-#include "extract/labels/label_pressures.h"
-
-#include "core/base/memory.h"
 #include "core/base/parallel.h"
 #include "core/base/status.h"
 
@@ -119,23 +116,17 @@ static cw_status average_all(averager *s, cw_error *err)
     return st;
 }
 
-cw_status cwi_labels_smooth(cwi_label_net *net, const float *originals,
+cw_status cwi_labels_smooth(cwi_label_net *net, const float *originals, float *spare,
                             cw_label_surfaces *surfaces, const cw_labels_desc *desc,
                             const size_t dim[3], cw_error *err)
 {
-    const size_t count = surfaces->mesh.vertex_count;
-    float *next = cwi_alloc_large(count + CWI_SPARE_POSITIONS, 3 * sizeof *next);
     averager s = {.net = net,
                   .originals = originals,
                   .bound = (float)desc->max_move,
                   .desc = desc,
                   .dim = dim,
-                  .count = count,
+                  .count = surfaces->mesh.vertex_count,
                   .from = surfaces->mesh.positions,
-                  .to = next};
-    cw_status st = next ? average_all(&s, err) : cwi_fail_memory(err);
-    cwi_free(next);
-    if (st == CW_OK && !desc->leave_open)
-        st = cwi_labels_keep_volumes(net, originals, surfaces, desc, dim, err);
-    return st;
+                  .to = spare};
+    return average_all(&s, err);
 }

@@ -5,7 +5,7 @@ from __future__ import annotations
 import threading
 import weakref
 from collections.abc import Iterable, Sequence
-from ctypes import POINTER, byref, c_size_t, c_uint32, memmove, memset, pointer, sizeof
+from ctypes import POINTER, byref, c_double, c_size_t, c_uint32, memmove, memset, pointer, sizeof
 from dataclasses import dataclass
 from typing import Any, Union
 
@@ -371,6 +371,12 @@ class LabelSurfaces:
         out = c.cw_mesh()
         call(lib.cw_label_mesh, byref(self._struct), take_count("label", label, 0, 2**32 - 1), byref(out))
         return Mesh._from_c(out)
+
+    def volumes(self) -> dict[int, float]:
+        """Returns the volume that the surface of each label encloses, in cubic millimetres."""
+        out = (c_double * len(self.voxels))()
+        lib.cw_label_volumes(byref(self._struct), out)
+        return dict(zip(self.voxels, out))
 
     def meshes(self) -> dict[int, Mesh]:
         """Returns the closed mesh of each label."""

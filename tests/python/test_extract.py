@@ -202,6 +202,7 @@ class Surfaces(Case):
         self.assertEqual(found.voxels, counts)
         for label, mesh in found.meshes().items():
             self.assertAlmostEqual(cw.check(mesh).quality["volume_mm3"] / counts[label], 1, 2)
+            self.assertAlmostEqual(found.volumes()[label] / counts[label], 1, 2)
         self.assertEqual(sum(p.count for p in found.patches), len(found.shared.triangles))
         shared = found.shared
         less = found.simplify(ratio=0.3)
