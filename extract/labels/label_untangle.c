@@ -82,6 +82,8 @@ cw_status cwi_labels_untangle(cwi_label_crossings *crossings, cw_mesh *mesh,
     cwi_label_moves *moves = pressures ? &pressures->moves : NULL;
     bool is_kept = !pressures;
     cw_status st = cwi_label_crossings_init(crossings, desc, err);
+    for (size_t n = 0; moves && n < moves->surfaces->patch_count; n++)
+        moves->patches[n].is_changed = true; /* as diagonals are */
     if (st == CW_OK)
         st = untangle_queue(crossings, mesh, moves, desc, err);
     for (int n = 0; n < REPAIRS && st == CW_OK && !is_kept; n++) {
