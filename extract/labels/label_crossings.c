@@ -15,7 +15,7 @@
  * q span with the fourth vertex. Then the polygon is cut into triangles that each lie in a
  * tetrahedron of the envelope, and touch its surface in the sides of the polygon alone. Such
  * polygons are sound: two of them meet in common sides and vertices only. Nearly all others are sound
- * if they are cut along their other diagonal, and so they are. */
+ * if they are cut along their other diagonal, and so they are; of two sound ones the shorter. */
 #include "extract/labels/label_crossings.h"
 
 #include "extract/labels/label_planes.h"
@@ -106,8 +106,8 @@ static void turn_diagonal(const cwi_label_crossings *c, size_t polygon, const ui
     memcpy(t, cut[flips], sizeof cut[flips]);
 }
 
-/* Returns true if a polygon is sound, as above. With may_turn it may be cut along its other diagonal for
- * that. */
+/* Returns true if a polygon is sound, as above. With may_turn it is cut along its shorter diagonal, or
+ * along the longer one if it is sound only so. */
 static bool is_sound(const cwi_label_crossings *c, size_t polygon, bool may_turn)
 {
     const int edge = c->net->polygons[polygon];
@@ -122,12 +122,16 @@ static bool is_sound(const cwi_label_crossings *c, size_t polygon, bool may_turn
     for (int n = 0; n < 4; n++)
         for (int a = 0; a < 3; a++)
             x[n][a] = (double)c->mesh->positions[3 * (size_t)v[n] + (size_t)a];
-    if (is_sound_from(x, 0, p, q))
-        return true;
-    const bool turns = may_turn && is_sound_from(x, 1, p, q);
-    if (turns)
+    const int first = may_turn && cwi_distance_sq(x[1], x[3]) < cwi_distance_sq(x[0], x[2]);
+    int from = first;
+    bool is_sound_so = is_sound_from(x, from, p, q);
+    if (!is_sound_so && may_turn) {
+        from = 1 - first;
+        is_sound_so = is_sound_from(x, from, p, q);
+    }
+    if (is_sound_so && from == 1)
         turn_diagonal(c, polygon, v);
-    return turns;
+    return is_sound_so;
 }
 
 static void judge_polygon(cwi_label_crossings *c, size_t polygon, bool may_turn)
