@@ -17,7 +17,7 @@ encoding: ascii
 END
 cubewright extract specks.nrrd --labels all -o specks.ply --table table.csv --json specks.json
 cut -d, -f1,8,9,15 table.csv
-sed -n '/"labels_off_volume"/,/]/p' specks.json
+sed -n '/"labels_off_volume"/,/]/p' specks.json | head -3
 cubewright extract specks.nrrd --labels 3,6 -o two.ply -q --table two.csv && cut -d, -f1,15 two.csv
 # surfaces that are open, or not smoothed, promise nothing
 cubewright extract specks.nrrd --labels all -o open.ply --open -q --table open.csv && cut -d, -f1,15 open.csv | tail -1
