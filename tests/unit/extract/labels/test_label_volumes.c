@@ -2,6 +2,8 @@
  * among others. */
 #include "support/support.h"
 
+#include "extract/labels/label_copier.h"
+
 #include <cubewright/field.h>
 
 #include <math.h>
@@ -77,26 +79,36 @@ static void volumes_are_kept(void **state)
     }
 }
 
-/* The volumes of labels are those of their meshes. */
+/* The volumes of labels are those of their meshes, and meshes that are copied one after the other are those
+ * that are copied alone. */
 static void volumes_are_those_of_meshes(void **state)
 {
     (void)state;
     cw_volume v;
     cw_label_surfaces s;
+    cwi_label_copier copier;
     cw_error err = {0};
     double volumes[600];
     make_cells(&v);
     assert_ok(cw_extract_labels(&v, NULL, &s, &err), err);
     assert_true(s.label_count <= 600);
+    assert_true(cwi_label_copier_init(&copier, &s));
     cw_label_volumes(&s, volumes);
     for (size_t n = 0; n < s.label_count; n++) {
-        cw_mesh mesh;
+        cw_mesh mesh, copy;
         cw_quality q;
         assert_ok(cw_label_mesh(&s, s.labels[n].label, &mesh, &err), err);
         assert_ok(cw_quality_measure(&mesh, NULL, &q, &err), err);
         assert_near(volumes[n], q.volume_mm3, 1e-4 * q.volume_mm3);
+        assert_ok(cwi_label_copier_copy(&copier, n, &copy, &err), err);
+        assert_int_equal(copy.vertex_count, mesh.vertex_count);
+        assert_int_equal(copy.triangle_count, mesh.triangle_count);
+        assert_memory_equal(copy.positions, mesh.positions, 12 * mesh.vertex_count);
+        assert_memory_equal(copy.triangles, mesh.triangles, 12 * mesh.triangle_count);
+        cw_mesh_free(&copy);
         cw_mesh_free(&mesh);
     }
+    cwi_label_copier_free(&copier);
     cw_label_surfaces_free(&s);
     cw_volume_free(&v);
 }
