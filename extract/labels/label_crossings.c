@@ -254,9 +254,10 @@ static void test_around(cwi_label_crossings *c, size_t polygon)
     test_inside(c, polygon, &planes);
     for (int n = 0; n < planes.count; n++) {
         uint32_t first = planes.corners[n], end = first + 1;
-        while (first > 0 && share_cube(c, first - 1, first))
+        const bool is_alone = !(c->net->kinds[first] & CWI_NET_FIXED);
+        while (!is_alone && first > 0 && share_cube(c, first - 1, first))
             first--;
-        while (end < c->mesh->vertex_count && share_cube(c, end, first))
+        while (!is_alone && end < c->mesh->vertex_count && share_cube(c, end, first))
             end++;
         for (uint32_t k = c->net->firsts[first]; k < c->net->firsts[end]; k++) {
             const uint32_t other = c->net->around[k];

@@ -10,18 +10,24 @@
  * the sums of its rows' absolute values: ten times what doubles need. */
 static const double ERROR_FRACTION = 1e-14;
 
-/* Sides of a plane, as bits; a corner in common has none, and one that may be on either has both. */
-enum { ABOVE = 1, BELOW = 2 };
+enum { QUAD = 4 };
+
+/* Returns the number of corners that are computed with: the same for most polygons. */
+static int padded_count(const cwi_label_planes *p)
+{
+    return p->count <= QUAD ? QUAD : CWI_POLYGON_CORNERS;
+}
 
 void cwi_label_planes_load(cwi_label_planes *p, const cwi_label_net *net, const cw_mesh *mesh,
                            size_t first)
 {
     p->count = cwi_polygon_corners(net, mesh, first, p->corners);
     p->has_normals = false;
-    for (int n = 0; n < p->count; n++) {
-        const float *from = mesh->positions + 3 * (size_t)p->corners[n];
+    const int padded = padded_count(p);
+    for (int n = 0; n < padded; n++) {
+        const float *from = mesh->positions + 3 * (size_t)p->corners[n < p->count ? n : 0];
         for (int a = 0; a < 3; a++) {
-            p->points[n][a] = (double)from[a];
+            p->points[a][n] = (double)from[a];
             p->low[a] = n == 0 || from[a] < p->low[a] ? from[a] : p->low[a];
             p->high[a] = n == 0 || from[a] > p->high[a] ? from[a] : p->high[a];
         }
@@ -33,15 +39,22 @@ static double sum_sizes(const double v[3])
     return fabs(v[0]) + fabs(v[1]) + fabs(v[2]);
 }
 
+/* Computes the way from corner 0 to another one. */
+static void find_way(const cwi_label_planes *p, int corner, double way[3])
+{
+    for (int a = 0; a < 3; a++)
+        way[a] = p->points[a][corner] - p->points[a][0];
+}
+
 static void find_normals(cwi_label_planes *p)
 {
     double side[3], next[3];
     if (p->has_normals)
         return;
     p->has_normals = true;
-    cwi_sub(p->points[1], p->points[0], side);
+    find_way(p, 1, side);
     for (int t = 0; t + 2 < p->count; t++) {
-        cwi_sub(p->points[t + 2], p->points[0], next);
+        find_way(p, t + 2, next);
         cwi_cross(side, next, p->normals[t]);
         p->errors[t] = ERROR_FRACTION * sum_sizes(side) * sum_sizes(next);
         for (int a = 0; a < 3; a++)
@@ -49,31 +62,54 @@ static void find_normals(cwi_label_planes *p)
     }
 }
 
+/* Returns the corners of a triangle, as bits. */
+static uint32_t corners_of(int triangle)
+{
+    return 1u | 3u << (triangle + 1);
+}
+
+/* Corners of a polygon that are on the sides of a plane, as bits; others may be on either. */
+typedef struct plane_sides {
+    uint32_t above, below;
+} plane_sides;
+
 /* Finds the sides of a polygon's corners of the plane of a triangle of another one. */
-static void find_sides(const cwi_label_planes *of, int triangle, const cwi_label_planes *p,
-                       double extent, int sides[CWI_POLYGON_CORNERS])
+static plane_sides find_sides(const cwi_label_planes *of, int triangle,
+                              const cwi_label_planes *p, double extent)
+{
+    double heights[CWI_POLYGON_CORNERS];
+    const double *normal = of->normals[triangle], error = of->errors[triangle] * extent;
+    const double x = of->points[0][0], y = of->points[1][0], z = of->points[2][0];
+    const int padded = padded_count(p);
+    for (int n = 0; n < padded; n++)
+        heights[n] = normal[0] * (p->points[0][n] - x) + normal[1] * (p->points[1][n] - y) +
+                     normal[2] * (p->points[2][n] - z);
+    plane_sides sides = {0, 0};
+    for (int n = 0; n < padded; n++) {
+        sides.above |= (uint32_t)(heights[n] > error) << n;
+        sides.below |= (uint32_t)(heights[n] < -error) << n;
+    }
+    return sides;
+}
+
+/* Returns true if a triangle is on one side, but for corners in common with the plane's. */
+static bool is_on_one_side(plane_sides sides, int triangle, uint32_t common)
+{
+    const uint32_t others = corners_of(triangle) & ~common;
+    return others && ((sides.above & others) == others || (sides.below & others) == others);
+}
+
+/* Finds the corners of a polygon, as bits, that are corners of a triangle of another one. */
+static uint32_t find_common(const cwi_label_planes *of, int triangle, const cwi_label_planes *p)
 {
     const uint32_t a = of->corners[0], b = of->corners[triangle + 1],
                    c = of->corners[triangle + 2];
-    const double *normal = of->normals[triangle], *at = of->points[0],
-                 error = of->errors[triangle] * extent;
+    uint32_t common = 0;
     for (int n = 0; n < p->count; n++) {
         const uint32_t v = p->corners[n];
-        const double height = normal[0] * (p->points[n][0] - at[0]) +
-                              normal[1] * (p->points[n][1] - at[1]) +
-                              normal[2] * (p->points[n][2] - at[2]);
-        sides[n] = v == a || v == b || v == c ? 0
-                   : height > error           ? ABOVE
-                   : height < -error          ? BELOW
-                                              : ABOVE | BELOW;
+        common |= (uint32_t)((v == a) | (v == b) | (v == c)) << n;
     }
-}
-
-/* Returns true if a triangle with such sides is on one side, or has corners in common there. */
-static bool is_on_one_side(const int sides[CWI_POLYGON_CORNERS], int triangle)
-{
-    const int all = sides[0] | sides[triangle + 1] | sides[triangle + 2];
-    return all == ABOVE || all == BELOW;
+    return common;
 }
 
 /* Finds whether two boxes are apart. Returns a bound for the distance of points in them, by axes. */
@@ -93,7 +129,6 @@ static double find_extent(const cwi_label_planes *one, const cwi_label_planes *o
 
 uint64_t cwi_label_planes_pairs(cwi_label_planes *one, cwi_label_planes *other)
 {
-    int sides[CWI_POLYGON_CORNERS];
     uint64_t pairs = 0;
     bool are_apart;
     const double extent = find_extent(one, other, &are_apart);
@@ -101,18 +136,20 @@ uint64_t cwi_label_planes_pairs(cwi_label_planes *one, cwi_label_planes *other)
         return 0;
     find_normals(one);
     for (int s = 0; s + 2 < one->count; s++) {
-        find_sides(one, s, other, extent, sides);
+        const plane_sides sides = find_sides(one, s, other, extent);
+        const uint32_t common = find_common(one, s, other);
         for (int t = 0; t + 2 < other->count; t++)
-            if (!is_on_one_side(sides, t))
+            if (!is_on_one_side(sides, t, common))
                 pairs |= (uint64_t)1 << (8 * s + t);
     }
     if (pairs == 0)
         return 0;
     find_normals(other);
     for (int t = 0; t + 2 < other->count; t++) {
-        find_sides(other, t, one, extent, sides);
+        const plane_sides sides = find_sides(other, t, one, extent);
+        const uint32_t common = find_common(other, t, one);
         for (int s = 0; s + 2 < one->count; s++)
-            if (is_on_one_side(sides, s))
+            if (is_on_one_side(sides, s, common))
                 pairs &= ~((uint64_t)1 << (8 * s + t));
     }
     return pairs;

@@ -12,8 +12,8 @@ extern "C" {
 typedef struct cwi_label_planes {
     int count; /* of corners */
     uint32_t corners[CWI_POLYGON_CORNERS];
-    float low[3], high[3]; /* its box */
-    double points[CWI_POLYGON_CORNERS][3];
+    float low[3], high[3];                 /* its box */
+    double points[3][CWI_POLYGON_CORNERS]; /* along each axis; the first fills up to 4 or all */
     bool has_normals;
     double normals[CWI_POLYGON_CORNERS][3]; /* of triangles, as long as twice their area */
     double errors[CWI_POLYGON_CORNERS];     /* bound of a normal's rounding error */
