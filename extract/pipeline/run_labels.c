@@ -1,7 +1,7 @@
 /* Finishes the surfaces of labels: interfaces are simplified together, then each label gets its mesh. */
 #include "core/base/memory.h"
 #include "core/base/status.h"
-#include "extract/labels/label_copier.h"
+#include "extract/pipeline/label_copier.h"
 #include "extract/pipeline/stages.h"
 
 /* Counts the triangles of all interfaces. */

@@ -2,7 +2,7 @@
  * among others. */
 #include "support/support.h"
 
-#include "extract/labels/label_copier.h"
+#include "extract/pipeline/label_copier.h"
 
 #include <cubewright/field.h>
 

@@ -1,6 +1,6 @@
 /* Copies the closed meshes of many labels out of the interfaces, one after the other. */
-#ifndef EXTRACT_LABELS_LABEL_COPIER_H
-#define EXTRACT_LABELS_LABEL_COPIER_H
+#ifndef EXTRACT_PIPELINE_LABEL_COPIER_H
+#define EXTRACT_PIPELINE_LABEL_COPIER_H
 
 #include <cubewright/labels.h>
 

@@ -1,6 +1,6 @@
 /* Copies meshes of labels: patches are listed by label once, and vertices are numbered in an array that is
  * cleared behind each label. */
-#include "extract/labels/label_copier.h"
+#include "extract/pipeline/label_copier.h"
 
 #include "core/base/memory.h"
 #include "core/base/status.h"
