@@ -1,7 +1,9 @@
 /* Tells of labels: the table of --table, and their part of the JSON report. */
 #include "cli/extract/label_run.h"
 
+#include "cli/framework/console.h"
 #include "cli/results/stage_facts.h"
+#include "core/base/memory.h"
 #include "core/base/status.h"
 #include "core/base/text.h"
 #include "core/geometry/affine.h"
@@ -10,7 +12,13 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
+
+enum { WORST = 3 }; /* labels that a note names */
+
+/* The fraction of their voxels' volume to which smoothing keeps labels. */
+static const double MAX_VOLUME_ERROR = 0.005;
 
 /* Returns the volume of a voxel in cubic millimetres; NAN where voxels differ in size. */
 static double voxel_mm3(const cli_label_run *r)
@@ -20,6 +28,80 @@ static double voxel_mm3(const cli_label_run *r)
         if (v->coordinates[a])
             return NAN;
     return fabs(cwi_affine_determinant(v->affine[0]));
+}
+
+cw_status cli_measure_label_volumes(cli_label_run *r, cw_error *err)
+{
+    const double voxel = voxel_mm3(r);
+    size_t next = 0;
+    for (size_t l = 0; l < r->layer_count; l++) {
+        const cw_label_surfaces *s = &r->layers[l].surfaces;
+        double *volumes = cwi_alloc_array(s->label_count, sizeof *volumes);
+        if (!volumes)
+            return cwi_fail_memory(err);
+        cw_label_volumes(s, volumes);
+        for (size_t n = 0; n < s->label_count && next < r->item_count; n++) {
+            cli_label_item *item = &r->items[next];
+            if (item->layer != &r->layers[l] || item->label.value != s->labels[n].label)
+                continue; /* hidden */
+            item->volume_error =
+                r->args->open ? NAN : volumes[n] / (voxel * (double)item->voxels) - 1;
+            next++;
+        }
+        cwi_free(volumes);
+    }
+    return CW_OK;
+}
+
+/* Returns true if a label's surface is off its voxels' volume by more than smoothing promises. */
+static bool is_off(const cli_label_item *item)
+{
+    return fabs(item->volume_error) > MAX_VOLUME_ERROR;
+}
+
+static int compare_off(const void *a, const void *b)
+{
+    const cli_label_item *x = *(const cli_label_item *const *)a,
+                         *y = *(const cli_label_item *const *)b;
+    const double dx = fabs(x->volume_error), dy = fabs(y->volume_error);
+    return dx != dy ? (dx < dy ? 1 : -1) : (x > y) - (x < y);
+}
+
+/* Returns the name of a label for a message: its number, if it has no other. */
+static const char *shown_name(const cli_label_item *item, char number[16])
+{
+    snprintf(number, 16, "%u", item->label.value);
+    return item->name[0] ? item->name : number;
+}
+
+cw_status cli_tell_label_volumes(const cli_label_run *r, cw_error *err)
+{
+    const cli_label_item **off = cwi_alloc_array(r->item_count, sizeof *off);
+    char list[3 * (CLI_LABEL_NAME + 32)] = "";
+    size_t count = 0, length = 0;
+    if (!off)
+        return cwi_fail_memory(err);
+    for (size_t n = 0; n < r->item_count; n++)
+        if (r->max_move > 0 && is_off(&r->items[n]))
+            off[count++] = &r->items[n];
+    qsort(off, count, sizeof *off, compare_off);
+    for (size_t n = 0; n < count && n < WORST && length < sizeof list; n++) {
+        char number[16];
+        length += (size_t)snprintf(list + length, sizeof list - length, "%s%s by %+.3g %%",
+                                   n ? ", " : "", shown_name(off[n], number),
+                                   100 * off[n]->volume_error);
+    }
+    if (count > WORST)
+        cli_say("%s: smoothing leaves %zu labels off the volume of their voxels by more than "
+                "0.5 %%: %s, and %zu more; --table lists all",
+                r->volume.path, count, list, count - WORST);
+    else if (count > 0)
+        cli_say("%s: smoothing leaves %zu label%s off the volume of %s voxels by more than "
+                "0.5 %%: %s",
+                r->volume.path, count, count == 1 ? "" : "s", count == 1 ? "its" : "their",
+                list);
+    cwi_free(off);
+    return CW_OK;
 }
 
 /* Returns the label on the other side of a patch of an item; false where it has no part in it. */
@@ -92,6 +174,10 @@ static void put_row(FILE *out, const cli_label_run *r, const cli_label_item *ite
                     cw_label_patch_area(s, &s->patches[p]));
             separator = ";";
         }
+    if (!isnan(item->volume_error))
+        fprintf(out, ",%.4f", 100 * item->volume_error);
+    else
+        fputc(',', out);
     if (has_errors(r) && !isnan(item->max_error_mm))
         fprintf(out, ",%.6g,%.6g", item->max_error_mm, item->rms_error_mm);
     else if (has_errors(r))
@@ -108,7 +194,8 @@ static void put_table(FILE *out, const void *p)
 {
     const cli_label_run *r = p;
     fputs("LabelValue,Name,Color_R,Color_G,Color_B,Color_A,layer,voxels,voxel_volume_mm3,"
-          "mesh_volume_mm3,area_mm2,triangles,components,neighbour_areas_mm2",
+          "mesh_volume_mm3,area_mm2,triangles,components,neighbour_areas_mm2,"
+          "volume_error_percent",
           out);
     if (has_errors(r))
         fputs(",max_error_mm,rms_error_mm", out);
@@ -174,6 +261,7 @@ static void put_item(cli_json *j, const cli_label_run *r, const cli_label_item *
     cli_json_number(j, "voxel_volume", voxel_mm3(r) * (double)item->voxels);
     cli_json_number(j, "mesh_volume",
                     item->facts.quality.open_edges ? NAN : item->facts.quality.volume_mm3);
+    cli_json_number(j, "volume_error_percent", 100 * item->volume_error);
     cli_json_number(j, "area", item->facts.quality.area_mm2);
     cli_json_count(j, "triangles", item->facts.quality.triangles);
     cli_json_count(j, "components", item->facts.quality.components);
@@ -207,6 +295,11 @@ void cli_put_labels(cli_json *j, const void *p)
     cli_json_open(j, "labels", '[');
     for (size_t n = 0; n < r->item_count; n++)
         put_item(j, r, &r->items[n]);
+    cli_json_close(j, ']');
+    cli_json_open(j, "labels_off_volume", '[');
+    for (size_t n = 0; n < r->item_count; n++)
+        if (is_off(&r->items[n]))
+            cli_json_count(j, NULL, r->items[n].label.value);
     cli_json_close(j, ']');
     cli_json_open(j, "missing_labels", '[');
     for (size_t n = 0; n < r->choice.count; n++)

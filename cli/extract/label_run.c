@@ -413,6 +413,10 @@ static cw_status run_labels(void *state, cw_error *err)
         st = tell_missing(r, err);
     if (st == CW_OK)
         st = list_items(r, err);
+    if (st == CW_OK)
+        st = cli_measure_label_volumes(r, err);
+    if (st == CW_OK)
+        st = cli_tell_label_volumes(r, err);
     if (st == CW_OK && r->args->lod.count)
         st = reserve_levels(r, err);
     if (st == CW_OK)

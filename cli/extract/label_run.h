@@ -21,7 +21,9 @@ typedef struct cli_label_item {
     char name[CLI_LABEL_NAME];
     const cli_label_layer *layer;
     size_t voxels;
-    cw_mesh mesh; /* closed, unless open; empty where only interfaces are written */
+    double volume_error; /* of its surface before simplification, as a fraction of its voxels'
+                            volume; NAN: unknown, as it is open or voxels differ in size */
+    cw_mesh mesh;        /* closed, unless open; empty where only interfaces are written */
     cw_pipeline_facts facts;
     double max_error_mm,
         rms_error_mm; /* measured from the surface before --simplify N, --lod; NAN: not */
@@ -82,6 +84,12 @@ CW_NODISCARD cw_status cli_write_label_levels(cli_label_run *run, cw_error *err)
 
 /* Writes the meshes, or with --shared-faces the interfaces, and tells of them. */
 CW_NODISCARD cw_status cli_write_labels(cli_label_run *run, cw_error *err);
+
+/* Measures the surfaces of labels against the volumes of their voxels. */
+CW_NODISCARD cw_status cli_measure_label_volumes(cli_label_run *run, cw_error *err);
+
+/* Names the labels whose volume smoothing does not keep to 0.5 %. */
+CW_NODISCARD cw_status cli_tell_label_volumes(const cli_label_run *run, cw_error *err);
 
 /* Writes the table of labels that --table asks for. */
 CW_NODISCARD cw_status cli_write_label_table(const cli_label_run *run, cw_error *err);

@@ -32,10 +32,12 @@ static const double NEAR_FRACTION = 0.5;
 /* Returns the coordinate of a fractional index along an axis, from -1 to its number of voxels. */
 static double find_coordinate(const cw_volume *v, int axis, double index)
 {
+    if (!v->coordinates[axis])
+        return index;
     const double last = (double)v->dim[axis] - 1, low = fmin(floor(index), last);
     if (v->dim[axis] > 1)
         return cwi_grid_coordinate(v, axis, (ptrdiff_t)low, index - low);
-    return v->coordinates[axis] ? v->coordinates[axis][0] + index : index;
+    return v->coordinates[axis][0] + index;
 }
 
 /* Converts voxel indices to a world point, from the mesh's origin. */
@@ -55,8 +57,9 @@ static void place_part(void *context, size_t n)
     const cwi_label_job *j = context;
     const size_t count = j->out->mesh.vertex_count;
     for (size_t i = n * PLACES; i < (n + 1) * PLACES && i < count; i++) {
+        const float *from = (j->places ? j->places : j->out->mesh.positions) + 3 * i;
         float *p = j->out->mesh.positions + 3 * i;
-        double index[3] = {(double)p[0], (double)p[1], (double)p[2]}, point[3];
+        double index[3] = {(double)from[0], (double)from[1], (double)from[2]}, point[3];
         index_to_point(j, index, point);
         for (int a = 0; a < 3; a++)
             p[a] = (float)point[a];
@@ -179,12 +182,14 @@ static cw_status ensure_capacity(cwi_label_job *j, const cw_labels_desc *desc, c
         net->polygons = cwi_alloc_large(mesh->triangle_count, 1);
         j->originals =
             cwi_alloc_large(mesh->vertex_count + CWI_SPARE_POSITIONS, 3 * sizeof *j->originals);
+        j->places =
+            cwi_alloc_large(mesh->vertex_count + CWI_SPARE_POSITIONS, 3 * sizeof *j->places);
         if (net->neighbours)
             memset(net->neighbours, 0xff, mesh->vertex_count * sizeof *net->neighbours);
     }
     if (!mesh->positions || !mesh->triangles ||
         (!desc->no_smoothing && mesh->vertex_count > 0 &&
-         !(net->neighbours && net->kinds && net->polygons && j->originals)))
+         !(net->neighbours && net->kinds && net->polygons && j->originals && j->places)))
         return cwi_fail_memory(err);
     for (int a = 0; a < 3; a++)
         middle[a] =
@@ -244,6 +249,50 @@ static cw_status run_pass(cwi_label_job *j, size_t chunks, const cw_labels_desc 
                      : run_chunks(j, 0, chunks, desc, &desc->progress, err);
 }
 
+static cw_status place_all(cwi_label_job *j, const cw_labels_desc *desc, cw_error *err)
+{
+    return cwi_parallel_for((j->out->mesh.vertex_count + PLACES - 1) / PLACES, PLACES,
+                            desc->threads, &desc->progress, "placing", place_part, j, err);
+}
+
+/* Smooths all vertices, gives labels their volumes, and puts vertices back where triangles cross. */
+static cw_status smooth_all(cwi_label_job *j, const cw_labels_desc *desc,
+                            cwi_label_smoother *smooth, cw_error *err)
+{
+    cw_mesh *mesh = &j->out->mesh;
+    const size_t *dim = j->layers.volume->dim;
+    const bool keeps_volumes = smooth == cwi_labels_smooth && !desc->leave_open;
+    cwi_label_pressures pressures = {.moves = {.net = &j->net,
+                                               .surfaces = j->out,
+                                               .originals = j->originals,
+                                               .dim = dim,
+                                               .bound = (float)desc->max_move}};
+    cwi_label_crossings crossings = {.mesh = mesh,
+                                     .originals = j->originals,
+                                     .net = &j->net,
+                                     .to_point = index_to_point,
+                                     .context = j};
+    memcpy(j->originals, mesh->positions, 3 * mesh->vertex_count * sizeof *j->originals);
+    cw_status st = cwi_label_net_finish(&j->net, mesh) ? CW_OK : cwi_fail_memory(err);
+    if (st == CW_OK)
+        st = smooth(&j->net, j->originals, j->places, j->out, desc, dim, err);
+    float *spare = j->places;
+    j->places = pressures.moves.places = mesh->positions;
+    mesh->positions = spare;
+    if (st == CW_OK && keeps_volumes)
+        st = cwi_label_pressures_init(&pressures)
+                 ? cwi_label_pressures_keep_first(&pressures, desc, err)
+                 : cwi_fail_memory(err);
+    if (st == CW_OK)
+        st = place_all(j, desc, err);
+    if (st == CW_OK)
+        st =
+            cwi_labels_untangle(&crossings, mesh, keeps_volumes ? &pressures : NULL, desc, err);
+    cwi_label_pressures_free(&pressures);
+    cwi_label_crossings_free(&crossings);
+    return st;
+}
+
 static cw_status run_job(cwi_label_job *j, const cw_labels_desc *desc,
                          cwi_label_smoother *smooth, cw_error *err)
 {
@@ -264,21 +313,11 @@ static cw_status run_job(cwi_label_job *j, const cw_labels_desc *desc,
     j->is_writing = true;
     if (st == CW_OK)
         st = run_pass(j, chunks, desc, err);
-    if (st == CW_OK && j->originals) {
-        memcpy(j->originals, j->out->mesh.positions,
-               3 * j->out->mesh.vertex_count * sizeof *j->originals);
-        if (!cwi_label_net_finish(&j->net, &j->out->mesh))
-            st = cwi_fail_memory(err);
-    }
-    if (st == CW_OK && j->originals)
-        st = smooth(&j->net, j->originals, j->out, desc, j->layers.volume->dim, err);
     if (st == CW_OK)
-        st = cwi_parallel_for((j->out->mesh.vertex_count + PLACES - 1) / PLACES, PLACES,
-                              desc->threads, &desc->progress, "placing", place_part, j, err);
-    if (st == CW_OK && j->originals)
-        st = cwi_labels_untangle(j->out, &j->net, j->originals, index_to_point, j, desc, err);
+        st = j->originals ? smooth_all(j, desc, smooth, err) : place_all(j, desc, err);
     cwi_label_net_free(&j->net);
     cwi_free(j->originals);
+    cwi_free(j->places);
     for (size_t c = 0; c < chunks; c++) {
         cwi_key_counts_free(&j->chunks[c].pairs);
         cwi_key_counts_free(&j->chunks[c].voxels);

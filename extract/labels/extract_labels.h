@@ -12,7 +12,7 @@ extern "C" {
 #endif
 
 /* Moves vertices, as cwi_labels_smooth(). */
-typedef cw_status cwi_label_smoother(cwi_label_net *net, const float *originals,
+typedef cw_status cwi_label_smoother(cwi_label_net *net, const float *originals, float *spare,
                                      cw_label_surfaces *surfaces, const cw_labels_desc *desc,
                                      const size_t dim[3], cw_error *err);
 

@@ -34,6 +34,7 @@ typedef struct cwi_label_job {
     bool is_mirrored;
     cwi_label_net net;
     float *originals; /* places before smoothing; NULL without smoothing */
+    float *places;    /* those after it, counted in voxels; at first spare */
     cw_label_surfaces *out;
     cwi_label_chunk *chunks;
     size_t first_chunk; /* of those whose slices are in memory */

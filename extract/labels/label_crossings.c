@@ -14,8 +14,11 @@
  * both, the edge passes through one of them, and their common side through the triangle that p and
  * q span with the fourth vertex. Then the polygon is cut into triangles that each lie in a
  * tetrahedron of the envelope, and touch its surface in the sides of the polygon alone. Such
- * polygons are sound: two of them meet in common sides and vertices only. */
+ * polygons are sound: two of them meet in common sides and vertices only. Nearly all others are sound
+ * if they are cut along their other diagonal, and so they are; of two sound ones the shorter. */
 #include "extract/labels/label_crossings.h"
+
+#include "extract/labels/label_planes.h"
 
 #include "core/base/memory.h"
 #include "core/base/parallel.h"
@@ -70,38 +73,70 @@ static void find_edge(const cwi_label_crossings *c, const uint32_t v[3], int axi
     c->to_point(c->context, high, q);
 }
 
-/* Returns true if a polygon is sound, as above. */
-static bool is_sound(const cwi_label_crossings *c, size_t polygon)
+/* Returns the side of a triangle on which p is, if q is on the other side: 1 or -1; 0 if not. */
+static int find_side(const double x[3], const double y[3], const double z[3], const double p[3],
+                     const double q[3])
+{
+    double u[3], v[3], normal[3];
+    cwi_sub(y, x, u);
+    cwi_sub(z, x, v);
+    cwi_cross(u, v, normal);
+    cwi_sub(p, x, u);
+    cwi_sub(q, x, v);
+    const double hp = cwi_dot(normal, u), hq = cwi_dot(normal, v),
+                 clearance = MIN_CLEARANCE * fabs(hp - hq);
+    return hp < -clearance && hq > clearance ? -1 : hp > clearance && hq < -clearance;
+}
+
+/* Returns true if a polygon of four corners is sound, as above, cut from one corner to the one across. */
+static bool is_sound_from(double x[4][3], int first, const double p[3], const double q[3])
+{
+    const double *a = x[first], *b = x[first + 1], *c = x[first + 2], *d = x[(first + 3) % 4];
+    const int side = find_side(a, b, c, p, q);
+    return side && find_side(a, c, d, p, q) == side;
+}
+
+/* Cuts a polygon of four corners along its other diagonal. */
+static void turn_diagonal(const cwi_label_crossings *c, size_t polygon, const uint32_t v[4])
+{
+    uint32_t *t = c->mesh->triangles + 3 * polygon;
+    const bool flips = t[4] != t[2];
+    const uint32_t cut[2][6] = {{v[1], v[2], v[3], v[1], v[3], v[0]},
+                                {v[1], v[3], v[2], v[1], v[0], v[3]}};
+    memcpy(t, cut[flips], sizeof cut[flips]);
+}
+
+/* Returns true if a polygon is sound, as above. With may_turn it is cut along its shorter diagonal, or
+ * along the longer one if it is sound only so. */
+static bool is_sound(const cwi_label_crossings *c, size_t polygon, bool may_turn)
 {
     const int edge = c->net->polygons[polygon];
     uint32_t v[CWI_POLYGON_CORNERS];
-    double p[3], q[3], d[3][3], u[3], w[3];
+    double p[3], q[3], x[4][3];
     if ((edge != 1 && edge != 2 && edge != 4) || list_corners(c, polygon, v) != 4)
         return false;
     for (int n = 0; n < 4; n++)
         if (c->net->kinds[v[n]] & CWI_NET_FIXED) /* others in its cube */
             return false;
     find_edge(c, v, edge >> 1, p, q);
-    for (int a = 0; a < 3; a++) {
-        const double from = (double)c->mesh->positions[3 * (size_t)v[0] + (size_t)a];
-        for (int n = 0; n < 3; n++)
-            d[n][a] = (double)c->mesh->positions[3 * (size_t)v[n + 1] + (size_t)a] - from;
-        p[a] -= from;
-        q[a] -= from;
+    for (int n = 0; n < 4; n++)
+        for (int a = 0; a < 3; a++)
+            x[n][a] = (double)c->mesh->positions[3 * (size_t)v[n] + (size_t)a];
+    const int first = may_turn && cwi_distance_sq(x[1], x[3]) < cwi_distance_sq(x[0], x[2]);
+    int from = first;
+    bool is_sound_so = is_sound_from(x, from, p, q);
+    if (!is_sound_so && may_turn) {
+        from = 1 - first;
+        is_sound_so = is_sound_from(x, from, p, q);
     }
-    cwi_cross(d[1], p, u);
-    cwi_cross(d[1], q, w);
-    const double p1 = cwi_dot(d[0], u), q1 = cwi_dot(d[0], w),
-                 h1 = MIN_CLEARANCE * fabs(p1 - q1);
-    const double p2 = -cwi_dot(d[2], u), q2 = -cwi_dot(d[2], w),
-                 h2 = MIN_CLEARANCE * fabs(p2 - q2);
-    return (p1 < -h1 && q1 > h1 && p2 < -h2 && q2 > h2) ||
-           (p1 > h1 && q1 < -h1 && p2 > h2 && q2 < -h2);
+    if (is_sound_so && from == 1)
+        turn_diagonal(c, polygon, v);
+    return is_sound_so;
 }
 
-static void judge_polygon(cwi_label_crossings *c, size_t polygon)
+static void judge_polygon(cwi_label_crossings *c, size_t polygon, bool may_turn)
 {
-    c->flags[polygon] = is_sound(c, polygon) ? CWI_POLYGON_SOUND : CWI_POLYGON_QUEUED;
+    c->flags[polygon] = is_sound(c, polygon, may_turn) ? CWI_POLYGON_SOUND : CWI_POLYGON_QUEUED;
 }
 
 static void judge_part(void *context, size_t n)
@@ -109,7 +144,7 @@ static void judge_part(void *context, size_t n)
     cwi_label_crossings *c = context;
     for (size_t t = n * PART; t < (n + 1) * PART && t < c->mesh->triangle_count; t++)
         if (c->net->polygons[t])
-            judge_polygon(c, t);
+            judge_polygon(c, t, true);
 }
 
 cw_status cwi_label_crossings_init(cwi_label_crossings *c, const cw_labels_desc *desc,
@@ -173,25 +208,30 @@ static void test_pair(cwi_label_crossings *c, size_t s, size_t t)
 }
 
 /* Tests the triangles of a polygon: with each other, and whether they have an area. */
-static void test_inside(cwi_label_crossings *c, size_t polygon)
+static void test_inside(cwi_label_crossings *c, size_t polygon, cwi_label_planes *planes)
 {
-    const size_t end = cwi_polygon_end(c->net, c->mesh, polygon);
-    for (size_t s = polygon; s < end; s++) {
-        const uint32_t *v = corners_of(c, s);
-        if (!all_back(c, v) && !cwi_has_area(c->mesh->positions, v))
+    const size_t count = (size_t)planes->count - 2;
+    const uint64_t pairs = cwi_label_planes_pairs(planes, planes);
+    for (size_t s = 0; s < count; s++) {
+        const uint32_t *v = corners_of(c, polygon + s);
+        if (!cwi_label_planes_has_area(planes, (int)s) && !all_back(c, v) &&
+            !cwi_has_area(c->mesh->positions, v))
             hit_triangle(c, v);
-        for (size_t t = s + 1; t < end; t++)
-            test_pair(c, s, t);
+        for (size_t t = s + 1; t < count; t++)
+            if (pairs >> (8 * s + t) & 1)
+                test_pair(c, polygon + s, polygon + t);
     }
 }
 
-static void test_polygons(cwi_label_crossings *c, size_t one, size_t other)
+static void test_polygons(cwi_label_crossings *c, size_t one, cwi_label_planes *planes,
+                          size_t other)
 {
-    const size_t end = cwi_polygon_end(c->net, c->mesh, one),
-                 other_end = cwi_polygon_end(c->net, c->mesh, other);
-    for (size_t s = one; s < end; s++)
-        for (size_t t = other; t < other_end; t++)
-            test_pair(c, s, t);
+    cwi_label_planes others;
+    cwi_label_planes_load(&others, c->net, c->mesh, other);
+    const uint64_t pairs = cwi_label_planes_pairs(planes, &others);
+    for (size_t n = 0; pairs >> n && n < 64; n++)
+        if (pairs >> n & 1)
+            test_pair(c, one + n / 8, other + n % 8);
 }
 
 /* Returns true if two vertices are in one cube. */
@@ -206,29 +246,33 @@ static bool share_cube(const cwi_label_crossings *c, uint32_t v, uint32_t w)
  * cubes around its edge. Vertices of one cube follow each other. */
 static void test_around(cwi_label_crossings *c, size_t polygon)
 {
-    uint32_t corners[CWI_POLYGON_CORNERS], seen[SEEN];
+    cwi_label_planes planes;
+    uint32_t seen[SEEN];
     const uint8_t flags = c->flags[polygon];
-    const int count = list_corners(c, polygon, corners);
     int seen_count = 0;
-    test_inside(c, polygon);
-    for (int n = 0; n < count; n++) {
-        uint32_t first = corners[n], end = first + 1;
-        while (first > 0 && share_cube(c, first - 1, first))
+    cwi_label_planes_load(&planes, c->net, c->mesh, polygon);
+    test_inside(c, polygon, &planes);
+    for (int n = 0; n < planes.count; n++) {
+        uint32_t first = planes.corners[n], end = first + 1;
+        const bool is_alone = !(c->net->kinds[first] & CWI_NET_FIXED);
+        while (!is_alone && first > 0 && share_cube(c, first - 1, first))
             first--;
-        while (end < c->mesh->vertex_count && share_cube(c, end, first))
+        while (!is_alone && end < c->mesh->vertex_count && share_cube(c, end, first))
             end++;
         for (uint32_t k = c->net->firsts[first]; k < c->net->firsts[end]; k++) {
             const uint32_t other = c->net->around[k];
             const uint8_t its = c->flags[other];
             int i = 0;
+            if (other == polygon || (its & flags & CWI_POLYGON_SOUND) ||
+                (its & CWI_POLYGON_QUEUED && other < polygon)) /* it tests this one */
+                continue;
             while (i < seen_count && seen[i] != other)
                 i++;
-            if (i < seen_count || other == polygon || (its & flags & CWI_POLYGON_SOUND) ||
-                (its & CWI_POLYGON_QUEUED && other < polygon)) /* it tests this one */
+            if (i < seen_count)
                 continue;
             if (seen_count < SEEN)
                 seen[seen_count++] = other;
-            test_polygons(c, polygon, other);
+            test_polygons(c, polygon, &planes, other);
         }
     }
 }
@@ -258,7 +302,7 @@ void cwi_label_crossings_renew(cwi_label_crossings *c)
             const uint32_t polygon = c->net->around[k];
             if (c->flags[polygon] & CWI_POLYGON_QUEUED)
                 continue;
-            judge_polygon(c, polygon);
+            judge_polygon(c, polygon, false);
             c->flags[polygon] |= CWI_POLYGON_QUEUED;
             c->queue[c->queued++] = polygon;
         }

@@ -30,7 +30,8 @@ typedef struct cwi_label_crossings {
     uint8_t *hits; /* of vertices: 1 if a triangle with it crosses another */
 } cwi_label_crossings;
 
-/* Finds polygons that are not proven to cross none, and queues them.
+/* Finds polygons that are not proven to cross none, and queues them. Polygons of four corners may be
+ * cut along their other diagonal for the proof.
  * Returns  CW_ERR_NO_MEMORY; CW_ERR_CANCELLED; free with cwi_label_crossings_free() */
 CW_NODISCARD cw_status cwi_label_crossings_init(cwi_label_crossings *c,
                                                 const cw_labels_desc *desc, cw_error *err);

@@ -17,6 +17,19 @@ static void make_tets(uint8_t tets[CWI_TETS])
                 tets[count++] = (uint8_t)(1 | 1 << (1 << a) | 1 << (1 << a | 1 << b) | 1 << 7);
 }
 
+/* Splits the cube into two prisms along each axis, of three tetrahedra each: on the sides of its
+ * diagonal plane. The second one has those with the corner along the axis after it, alone or with the
+ * first axis. */
+static void make_prisms(const uint8_t tets[CWI_TETS], uint8_t prisms[3])
+{
+    for (int axis = 0; axis < 3; axis++)
+        for (int t = 0; t < CWI_TETS; t++) {
+            const int corner = 1 << (axis + 1) % 3;
+            if (tets[t] >> corner & 1 || tets[t] >> (corner | 1 << axis) & 1)
+                prisms[axis] |= (uint8_t)(1 << t);
+        }
+}
+
 /* Returns true if an edge of tetrahedra joins two corners: one rises from the other. */
 static bool is_edge(int a, int b)
 {
@@ -131,34 +144,59 @@ static void make_ring(const uint8_t tets[CWI_TETS], int edge, cwi_label_ring *ri
     }
 }
 
+/* Lists the cubes of a ring. Tetrahedra of one cube follow each other, around the ring's start too. */
+static void list_cubes(const cwi_label_ring *ring, cwi_label_edge_cubes *cubes)
+{
+    for (int n = 0; n < ring->count; n++) {
+        bool is_new = true;
+        for (int m = 0; m < cubes->count; m++)
+            is_new = is_new && memcmp(cubes->cube[m], ring->cube[n], sizeof ring->cube[n]) != 0;
+        if (is_new)
+            memcpy(cubes->cube[cubes->count++], ring->cube[n], sizeof ring->cube[n]);
+    }
+}
+
 void cwi_label_rules_make(cwi_label_rules *r)
 {
     memset(r, 0, sizeof *r);
     make_tets(r->tets);
+    make_prisms(r->tets, r->prisms);
     for (int n = 0; n < 256; n++)
         r->is_simple[n] = is_connected(n) && is_connected(WHOLE & ~n) && !has_split_face(n);
     for (int edge = 1; edge < 8; edge++)
         make_ring(r->tets, edge, &r->rings[edge]);
+    for (int edge = 1; edge < 8; edge++)
+        list_cubes(&r->rings[edge], &r->around[edge]);
+}
+
+/* Returns the corners with a label, as bits. */
+static int find_corners(const uint32_t labels[8], uint32_t label)
+{
+    int corners = 0;
+    for (int n = 0; n < 8; n++)
+        corners |= (labels[n] == label) << n;
+    return corners;
 }
 
 uint8_t cwi_label_cube(const cwi_label_rules *r, const uint32_t labels[8])
 {
-    int same[8], done = 0;
-    bool is_simple = true;
-    for (int a = 0; a < 8; a++) {
-        same[a] = 0;
-        for (int b = 0; b < 8 && !(done >> a & 1); b++)
-            same[a] |= (labels[a] == labels[b]) << b;
-        is_simple = is_simple && (done >> a & 1 || r->is_simple[same[a]]);
-        done |= same[a];
-    }
-    if (same[0] == WHOLE)
+    const int first = find_corners(labels, labels[0]);
+    bool is_simple = r->is_simple[first];
+    if (first == WHOLE)
         return 0;
+    for (int done = first; done != WHOLE && is_simple;) {
+        int next = 1;
+        while (done >> next & 1)
+            next++;
+        const int same = find_corners(labels, labels[next]);
+        is_simple = r->is_simple[same];
+        done |= same;
+    }
     if (is_simple)
         return CWI_CUBE_SIMPLE;
     uint8_t cube = 0;
     for (int t = 0; t < CWI_TETS; t++)
-        if ((r->tets[t] & same[0]) != r->tets[t]) /* all tetrahedra have corner 0 */
+        if ((r->tets[t] & first) != r->tets[t]) /* all tetrahedra have corner 0 */
             cube |= (uint8_t)(1 << t);
     return cube;
 }

@@ -1,5 +1,5 @@
 /* Copies meshes out of the interfaces: the closed one of a label, or that of a patch. */
-#include <cubewright/labels.h>
+#include "extract/labels/find_label.h"
 
 #include "core/mesh/mesh_triangle.h"
 #include "extract/labels/key_counts.h"
@@ -102,4 +102,25 @@ double cw_label_patch_area(const cw_label_surfaces *s, const cw_label_patch *pat
     for (size_t t = patch->first; t < patch->first + patch->count; t++)
         area += cwi_mesh_area(&s->mesh, t);
     return area;
+}
+
+void cw_label_volumes(const cw_label_surfaces *s, double *volumes)
+{
+    for (size_t n = 0; n < s->label_count; n++)
+        volumes[n] = 0;
+    for (size_t p = 0; p < s->patch_count; p++) {
+        double sum = 0;
+        for (size_t t = s->patches[p].first; t < s->patches[p].first + s->patches[p].count;
+             t++) {
+            double corner[3], normal[3];
+            cwi_mesh_corner(&s->mesh, t, 0, corner);
+            cwi_mesh_normal(&s->mesh, t, normal);
+            sum += cwi_dot(corner, normal) / 6;
+        }
+        for (int side = 0; side < 2; side++) {
+            const size_t n = cwi_find_label(s, s->patches[p].labels[side]);
+            if (n < s->label_count)
+                volumes[n] += side == 0 ? sum : -sum;
+        }
+    }
 }

@@ -1,155 +1,79 @@
-/* Gives labels the volumes of their voxels. Directions of vertices in one patch are computed once,
- * and those of vertices on curves in each round.
+/* Gives labels the volumes of their voxels.
  * Source  conjugate gradients [Hestenes1952], on a graph of labels whose edges are interfaces */
 #include "extract/labels/label_pressures.h"
 
+#include "extract/labels/find_label.h"
+
 #include "core/base/memory.h"
-#include "core/base/parallel.h"
 #include "core/base/status.h"
-#include "core/geometry/affine.h"
-#include "core/geometry/vec3.h"
-#include "core/mesh/mesh_triangle.h"
 
 #include <math.h>
 #include <string.h>
 
-enum {
-    ROUNDS = 8,
-    SMALL = 64 /* voxels */,
-    SOLVER_ROUNDS = 300,
-    PART = 1 << 14,
-    CURVE_PART = 1 << 10
-};
+enum { FULL_ROUNDS = 2, FIRST_ROUNDS = 4, SMALL = 64 /* voxels */, SOLVER_ROUNDS = 300 };
 
-/* The fraction of its volume that a label may lack. */
-static const double MAX_DEFICIT = 5e-6;
+/* The fraction of its volume that a label may lack before triangles that cross are looked for. */
+static const double MAX_FIRST_DEFICIT = 1e-3;
 
-/* The most that a label asks for, by what it lacks. */
-static const double MAX_STEP_SCALE = 8;
-
-/* The fraction that ends the smoothing of a small one. */
-static const double MAX_SMALL_DEFICIT = 0.01;
+/* The square of the residual, relative to its first one, that ends the solver. */
+static const double MAX_RESIDUAL_SQ = 1e-8;
 
 /* The least part of a pressure's effect that is reckoned with. */
-static const double MIN_ALIGNMENT = 0.2;
+static const double MIN_EFFECT = 0.05;
 
-/* The sum of the triangles' area vectors around a vertex in one patch. */
-typedef struct direction {
-    float normal[3], area;
-    uint32_t patch;
-} direction;
-
-typedef struct volume_solver {
-    cwi_label_net *net;
-    cw_label_surfaces *surfaces;
-    const float *originals;
-    float bound;
-    double side; /* on which triangles have their normals in the grid: -1 if the world is a
-                    mirror image of it */
-    const size_t *dim;
-    size_t labels;
-    double (
-        *requests)[2]; /* of labels: the volume that lacked in the round before, and by how many
-                                times it was asked for */
-    size_t *patch_counts;    /* of labels, and the background */
-    double *volumes, *areas; /* of patches: inside labels[0], signed; and of triangles */
-    double (*alignments)
-        [2]; /* of patches: their vertices' normals, and areas to hold them against */
-    uint32_t (*sides)[2];  /* numbers of a patch's labels; `labels`: the background */
-    double *pressures;     /* 4 x (labels + 1) numbers to solve with; these come first */
-    direction *directions; /* of vertices */
-    size_t curve_count;
-    uint32_t *curve;   /* vertices on curves */
-    float (*moves)[3]; /* of those */
-    bool is_first;     /* round */
-} volume_solver;
-
-/* Computes a triangle's normal on the outside, as long as twice its area. */
-static inline void find_normal(const volume_solver *s, size_t t, double normal[3])
+/* Finds the labels that lack too much volume, and their patches. Returns true if there are none. */
+static bool find_deficits(cwi_label_pressures *p, double max_deficit, bool takes_all)
 {
-    cwi_mesh_normal(&s->surfaces->mesh, t, normal);
-    for (int a = 0; a < 3; a++)
-        normal[a] *= s->side;
+    const cw_label_surfaces *f = p->moves.surfaces;
+    bool is_kept = true;
+    for (size_t n = 0; n < p->labels; n++)
+        p->deficits[n] = (double)f->labels[n].voxels;
+    for (size_t n = 0; n < f->patch_count; n++) {
+        p->deficits[p->sides[n][0]] -= p->moves.patches[n].volume;
+        p->deficits[p->sides[n][1]] += p->moves.patches[n].volume;
+    }
+    for (size_t n = 0; n < p->labels; n++) {
+        const bool lacks = fabs(p->deficits[n]) > max_deficit * (double)f->labels[n].voxels;
+        p->are_active[n] = takes_all || lacks;
+        is_kept = is_kept && !lacks;
+    }
+    p->active_count = 0;
+    for (size_t n = 0; n < f->patch_count; n++)
+        if (p->are_active[p->sides[n][0]] || p->are_active[p->sides[n][1]])
+            p->active[p->active_count++] = (uint32_t)n;
+    return is_kept;
 }
 
-/* Adds a triangle to the directions of its vertices that are in one patch. */
-static void add_directions(const volume_solver *s, size_t t, size_t patch,
-                           const double normal[3], double area)
+/* Finds how volumes change with pressures: by areas, less what bounds hold. A patch whose pressures
+ * changed their order is free again. */
+static void find_weights(const cwi_label_pressures *p, const double *before)
 {
-    for (size_t c = 0; c < 3; c++) {
-        const uint32_t v = s->surfaces->mesh.triangles[3 * t + c];
-        direction *to = &s->directions[v];
-        if (s->net->kinds[v])
-            continue;
-        for (int a = 0; a < 3; a++)
-            to->normal[a] += (float)normal[a];
-        to->area += (float)area;
-        to->patch = (uint32_t)patch;
+    for (size_t i = 0; i < p->active_count; i++) {
+        const cwi_patch_facts *patch = &p->moves.patches[p->active[i]];
+        double effect = patch->extent > 0 ? patch->effect / patch->extent : 1;
+        const uint32_t *side = p->sides[p->active[i]];
+        const bool turns =
+            before && patch->difference * (before[side[0]] - before[side[1]]) < 0;
+        if (patch->effect > 0 && !turns)
+            effect *= 1 - patch->held / patch->effect;
+        p->weights[i] = patch->area * fmax(effect, MIN_EFFECT);
     }
 }
 
-/* Measures a patch: the volume between it and the middle, and its area. A label that smoothing
- * has shrunk to almost nothing has a fair area after the first round only. */
-static void measure_patch(void *context, size_t n)
+/* Multiplies by the graph Laplacian of labels, whose edges are weighted patches: how volumes change
+ * with pressures. Labels that lack nothing have none. */
+static void apply_laplacian(const cwi_label_pressures *p, const double *x, double *y)
 {
-    const volume_solver *s = context;
-    const cw_label_patch *patch = &s->surfaces->patches[n];
-    const double middle[3] = {0.5 * (double)s->dim[0], 0.5 * (double)s->dim[1],
-                              0.5 * (double)s->dim[2]};
-    double volume = 0, areas = 0;
-    for (size_t t = patch->first; t < patch->first + patch->count; t++) {
-        double normal[3], from[3];
-        find_normal(s, t, normal);
-        cwi_mesh_corner(&s->surfaces->mesh, t, 0, from);
-        cwi_sub(from, middle, from);
-        volume += cwi_dot(from, normal);
-        const double area = cwi_length(normal);
-        areas += area;
-        if (s->is_first)
-            add_directions(s, t, n, normal, area);
-    }
-    s->volumes[n] = volume / 6;
-    s->areas[n] = areas / 2;
-}
-
-/* Sums up how far apart the normals around vertices are: a vertex in a corner of three faces moves
- * each by a third of its own way. */
-static void measure_alignments(const volume_solver *s)
-{
-    for (size_t v = 0; v < s->surfaces->mesh.vertex_count; v++) {
-        const direction *d = &s->directions[v];
-        if (s->net->kinds[v] || !(d->area > 0))
-            continue;
-        double normal_sq = 0;
-        for (int a = 0; a < 3; a++)
-            normal_sq += (double)d->normal[a] * (double)d->normal[a];
-        s->alignments[d->patch][0] += normal_sq / (double)d->area;
-        s->alignments[d->patch][1] += (double)d->area;
-    }
-}
-
-/* Scales the areas of patches: the weights of the graph Laplacian of labels. */
-static void scale_areas(const volume_solver *s)
-{
-    for (size_t n = 0; n < s->surfaces->patch_count; n++) {
-        const double *alignment = s->alignments[n],
-                     weight = alignment[1] > 0 ? alignment[0] / alignment[1] : 1;
-        s->areas[n] *= weight > MIN_ALIGNMENT ? weight : MIN_ALIGNMENT;
-    }
-}
-
-/* Multiplies by the graph Laplacian of labels, whose edges are patches weighted by area: how volumes
- * change with pressures. */
-static void apply_laplacian(const volume_solver *s, const double *x, double *y)
-{
-    memset(y, 0, (s->labels + 1) * sizeof *y);
-    for (size_t n = 0; n < s->surfaces->patch_count; n++) {
-        const uint32_t *side = s->sides[n];
-        const double flow = s->areas[n] * (x[side[0]] - x[side[1]]);
+    memset(y, 0, (p->labels + 1) * sizeof *y);
+    for (size_t i = 0; i < p->active_count; i++) {
+        const uint32_t *side = p->sides[p->active[i]];
+        const double flow = p->weights[i] * (x[side[0]] - x[side[1]]);
         y[side[0]] += flow;
         y[side[1]] -= flow;
     }
-    y[s->labels] = 0; /* the background has none */
+    for (size_t n = 0; n <= p->labels; n++)
+        if (!p->are_active[n])
+            y[n] = 0;
 }
 
 static double dot_all(const double *x, const double *y, size_t count)
@@ -161,274 +85,131 @@ static double dot_all(const double *x, const double *y, size_t count)
 }
 
 /* Solves for the pressures that add the missing volumes, by conjugate gradients. */
-static void solve_pressures(const volume_solver *s)
+static void solve_pressures(const cwi_label_pressures *p)
 {
-    const size_t count = s->labels + 1;
-    double *x = s->pressures, *r = x + count, *p = r + count, *q = p + count;
+    const size_t count = p->labels + 1;
+    double *x = p->pressures, *r = x + count, *d = r + count, *q = d + count;
     memset(x, 0, count * sizeof *x);
-    memcpy(p, r, count * sizeof *p);
+    for (size_t n = 0; n < count; n++)
+        r[n] = d[n] = p->are_active[n] ? p->deficits[n] : 0;
     double residual_sq = dot_all(r, r, count);
-    const double end = 1e-12 * residual_sq;
+    const double end = MAX_RESIDUAL_SQ * residual_sq;
     for (int n = 0; n < SOLVER_ROUNDS && residual_sq > end; n++) {
-        apply_laplacian(s, p, q);
-        const double curvature = dot_all(p, q, count);
+        apply_laplacian(p, d, q);
+        const double curvature = dot_all(d, q, count);
         if (!(curvature > 0))
             return;
         const double step = residual_sq / curvature;
         for (size_t i = 0; i < count; i++) {
-            x[i] += step * p[i];
+            x[i] += step * d[i];
             r[i] -= step * q[i];
         }
         const double next_sq = dot_all(r, r, count);
         for (size_t i = 0; i < count; i++)
-            p[i] = r[i] + next_sq / residual_sq * p[i];
+            d[i] = r[i] + next_sq / residual_sq * d[i];
         residual_sq = next_sq;
     }
 }
 
-/* Returns the difference of pressures across a patch. */
-static double pressure_difference(const volume_solver *s, size_t patch)
+/* Gives patches the differences of pressures across them. */
+static void set_differences(cwi_label_pressures *p)
 {
-    return s->pressures[s->sides[patch][0]] - s->pressures[s->sides[patch][1]];
-}
-
-/* Finds the patch of a triangle. */
-static size_t find_patch(const cw_label_surfaces *f, size_t triangle)
-{
-    size_t low = 0, high = f->patch_count;
-    while (high - low > 1) {
-        const size_t middle = low + (high - low) / 2;
-        if (f->patches[middle].first <= triangle)
-            low = middle;
-        else
-            high = middle;
-    }
-    return low;
-}
-
-/* Finds the move of a vertex on a curve, from the triangles around it. */
-static void find_curve_move(const volume_solver *s, uint32_t vertex, float move[3])
-{
-    const cwi_label_net *net = s->net;
-    const cw_label_surfaces *f = s->surfaces;
-    double sum[3] = {0}, area = 0, difference = 0;
-    size_t patch_end = 0;
-    for (uint32_t k = net->firsts[vertex]; k < net->firsts[vertex + 1]; k++) {
-        const size_t end = cwi_polygon_end(net, &f->mesh, net->around[k]);
-        if (net->around[k] >= patch_end) { /* they rise */
-            const size_t patch = find_patch(f, net->around[k]);
-            patch_end = f->patches[patch].first + f->patches[patch].count;
-            difference = pressure_difference(s, patch);
-        }
-        for (size_t t = net->around[k]; t < end; t++) {
-            const uint32_t *v = f->mesh.triangles + 3 * t;
-            double normal[3];
-            if (v[0] != vertex && v[1] != vertex && v[2] != vertex)
-                continue;
-            find_normal(s, t, normal);
-            for (int a = 0; a < 3; a++)
-                sum[a] += difference * normal[a];
-            area += cwi_length(normal);
-        }
-    }
-    for (int a = 0; a < 3; a++)
-        move[a] = area > 0 ? (float)(sum[a] / area) : 0;
-}
-
-static void find_curve_part(void *context, size_t n)
-{
-    const volume_solver *s = context;
-    for (size_t i = n * CURVE_PART; i < (n + 1) * CURVE_PART && i < s->curve_count; i++)
-        find_curve_move(s, s->curve[i], s->moves[i]);
-}
-
-static void move_vertex(const volume_solver *s, size_t v, const float move[3])
-{
-    float *p = s->surfaces->mesh.positions + 3 * v;
-    const float *o = s->originals + 3 * v;
-    for (int a = 0; a < 3; a++) {
-        const float low = o[a] - s->bound, high = o[a] + s->bound, to = p[a] + move[a];
-        p[a] = to < low ? low : to > high ? high : to;
+    for (size_t n = 0; n < p->moves.surfaces->patch_count; n++)
+        p->moves.patches[n].difference = 0;
+    for (size_t i = 0; i < p->active_count; i++) {
+        const uint32_t *side = p->sides[p->active[i]];
+        p->moves.patches[p->active[i]].difference =
+            p->pressures[side[0]] - p->pressures[side[1]];
     }
 }
 
-static void move_part(void *context, size_t n)
+cw_status cwi_label_pressures_keep(cwi_label_pressures *p, double max_deficit, int full_rounds,
+                                   int rounds, bool *is_kept, const cw_labels_desc *desc,
+                                   cw_error *err)
 {
-    const volume_solver *s = context;
-    const size_t count = s->surfaces->mesh.vertex_count;
-    for (size_t v = n * PART; v < (n + 1) * PART && v < count; v++) {
-        const direction *d = &s->directions[v];
-        if (s->net->kinds[v] || !(d->area > 0))
-            continue;
-        const float by = (float)pressure_difference(s, d->patch) / d->area;
-        move_vertex(s, v, (float[3]){by * d->normal[0], by * d->normal[1], by * d->normal[2]});
-    }
-}
-
-static cw_status move_all(volume_solver *s, const cw_labels_desc *desc, cw_error *err)
-{
-    const size_t vertices = s->surfaces->mesh.vertex_count;
-    cw_status st = cwi_parallel_for((s->curve_count + CURVE_PART - 1) / CURVE_PART,
-                                    32 * CURVE_PART, desc->threads, &desc->progress,
-                                    "keeping volumes", find_curve_part, s, err);
-    if (st == CW_OK)
-        st = cwi_parallel_for((vertices + PART - 1) / PART, PART, desc->threads,
-                              &desc->progress, "keeping volumes", move_part, s, err);
-    for (size_t i = 0; i < s->curve_count && st == CW_OK; i++)
-        move_vertex(s, s->curve[i], s->moves[i]);
-    return st;
-}
-
-/* Finds a label's number; the background's is the count of labels. */
-static uint32_t number_of(const cw_label_surfaces *s, uint32_t label)
-{
-    size_t low = 0, high = s->label_count;
-    while (low < high) {
-        const size_t middle = low + (high - low) / 2;
-        if (s->labels[middle].label < label)
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    return (uint32_t)(label == s->background ? s->label_count : low);
-}
-
-/* Computes the volumes that labels lack. Returns true if they are as good as none. */
-static bool find_volume_deficits(const volume_solver *s)
-{
-    const cw_label_surfaces *f = s->surfaces;
-    double *deficit = s->pressures + s->labels + 1;
-    bool is_full = true;
-    for (size_t n = 0; n < s->labels; n++)
-        deficit[n] = (double)f->labels[n].voxels;
-    deficit[s->labels] = 0;
-    for (size_t n = 0; n < f->patch_count; n++) {
-        deficit[s->sides[n][0]] -= s->volumes[n];
-        deficit[s->sides[n][1]] += s->volumes[n];
-    }
-    deficit[s->labels] = 0;
-    for (size_t n = 0; n < s->labels && is_full; n++)
-        is_full = fabs(deficit[n]) <= MAX_DEFICIT * (double)f->labels[n].voxels;
-    return is_full;
-}
-
-/* Asks for more of labels that got less than they lacked in the round before: the bound holds some
- * of their vertices. */
-static void scale_deficits(const volume_solver *s)
-{
-    double *deficit = s->pressures + s->labels + 1;
-    for (size_t n = 0; n < s->labels; n++) {
-        double *last = s->requests[n];
-        const double gained = last[0] != 0 ? 1 - deficit[n] / last[0] : 1;
-        const double step_scale = last[1] > 0 ? last[1] : 1;
-        last[1] = gained > 0.1 && gained < 0.9 ? fmin(step_scale / gained, MAX_STEP_SCALE)
-                  : gained >= 1.1              ? 1
-                                               : step_scale;
-        last[0] = deficit[n];
-        deficit[n] *= last[1];
-    }
-}
-
-/* Puts vertices of labels of a few voxels that lie in one other label, and still lack too much, back
- * to where they were: there they have their volume. Smoothing had made them flat. */
-static void restore_small(const volume_solver *s)
-{
-    const cw_label_surfaces *f = s->surfaces;
-    const double *deficit = s->pressures + s->labels + 1;
-    for (size_t n = 0; n < f->patch_count; n++)
-        for (int side = 0; side < 2; side++)
-            s->patch_counts[s->sides[n][side]]++;
-    for (size_t v = 0; v < f->mesh.vertex_count; v++) {
-        const direction *d = &s->directions[v];
-        if (s->net->kinds[v] || !(d->area > 0))
-            continue;
-        for (int side = 0; side < 2; side++) {
-            const uint32_t label = s->sides[d->patch][side];
-            if (label < s->labels && s->patch_counts[label] == 1 &&
-                f->labels[label].voxels <= SMALL &&
-                fabs(deficit[label]) > MAX_SMALL_DEFICIT * (double)f->labels[label].voxels)
-                memcpy(f->mesh.positions + 3 * v, s->originals + 3 * v, 3 * sizeof(float));
-        }
-    }
-}
-
-static cw_status restore_volumes(volume_solver *s, const cw_labels_desc *desc, cw_error *err)
-{
-    const cw_label_surfaces *f = s->surfaces;
-    const size_t triangles = f->mesh.triangle_count / (f->patch_count + 1);
     cw_status st = CW_OK;
     for (int round = 0; st == CW_OK; round++) {
-        s->is_first = round == 0;
-        st = cwi_parallel_for(f->patch_count, 8 * triangles, desc->threads, &desc->progress,
-                              "keeping volumes", measure_patch, s, err);
-        if (st != CW_OK || find_volume_deficits(s) || round == ROUNDS)
+        st = cwi_label_moves_measure(&p->moves, desc, err);
+        const bool is_done = st == CW_OK && find_deficits(p, max_deficit, round < full_rounds);
+        *is_kept = is_done && round == 0;
+        if (st != CW_OK || is_done || round == rounds)
             break;
-        if (s->is_first)
-            measure_alignments(s);
-        scale_areas(s);
-        scale_deficits(s);
-        solve_pressures(s);
-        st = move_all(s, desc, err);
+        find_weights(p, NULL);
+        solve_pressures(p);
+        find_weights(p, p->pressures);
+        solve_pressures(p);
+        set_differences(p);
+        st = cwi_label_moves_apply(&p->moves, desc, err);
     }
-    if (st == CW_OK)
-        restore_small(s);
     return st;
 }
 
-/* Lists vertices on curves, and numbers the labels of patches. */
-static bool prepare_solver(volume_solver *s)
+static void restore_vertex(cwi_label_moves *m, size_t v)
 {
-    const cw_label_surfaces *f = s->surfaces;
-    const size_t vertices = f->mesh.vertex_count;
-    const uint8_t *kinds = s->net->kinds;
-    for (size_t v = 0; v < vertices; v++)
-        s->curve_count += kinds[v] != 0 && !(kinds[v] & CWI_NET_FIXED);
-    s->directions = cwi_renew_large(s->net->neighbours, vertices, sizeof *s->directions);
-    s->net->neighbours = NULL;
-    s->volumes = cwi_alloc_array(f->patch_count, sizeof *s->volumes);
-    s->areas = cwi_alloc_array(f->patch_count, sizeof *s->areas);
-    s->patch_counts = cwi_alloc_zeroed(s->labels + 1, sizeof *s->patch_counts);
-    s->requests = cwi_alloc_zeroed(s->labels, sizeof *s->requests);
-    s->alignments = cwi_alloc_zeroed(f->patch_count, sizeof *s->alignments);
-    s->sides = cwi_alloc_array(f->patch_count, sizeof *s->sides);
-    s->pressures = cwi_alloc_zeroed(4 * (s->labels + 1), sizeof *s->pressures);
-    s->curve = cwi_alloc_array(s->curve_count, sizeof *s->curve);
-    s->moves = cwi_alloc_array(s->curve_count, sizeof *s->moves);
-    if (!s->directions || !s->volumes || !s->areas || !s->alignments || !s->requests ||
-        !s->patch_counts || !s->sides || !s->pressures || !s->curve || !s->moves)
+    memcpy(m->places + 3 * v, m->originals + 3 * v, 3 * sizeof *m->places);
+    m->net->kinds[v] |= CWI_NET_BACK;
+    cwi_label_moves_mark(m, v);
+    if (m->moved)
+        m->moved[v] = 1;
+}
+
+void cwi_label_pressures_restore_small(cwi_label_pressures *p, double max_deficit)
+{
+    cwi_label_moves *m = &p->moves;
+    const cw_label_surfaces *f = m->surfaces;
+    for (size_t n = 0; n < f->patch_count; n++)
+        for (int side = 0; side < 2; side++) {
+            const uint32_t label = p->sides[n][side];
+            const double voxels =
+                label < p->labels ? (double)f->labels[label].voxels : INFINITY;
+            if (voxels > SMALL || fabs(p->deficits[label]) <= max_deficit * voxels)
+                continue;
+            const size_t end = 3 * (f->patches[n].first + f->patches[n].count);
+            for (size_t i = 3 * f->patches[n].first; i < end; i++)
+                restore_vertex(m, f->mesh.triangles[i]);
+        }
+}
+
+cw_status cwi_label_pressures_keep_first(cwi_label_pressures *p, const cw_labels_desc *desc,
+                                         cw_error *err)
+{
+    bool is_kept;
+    return cwi_label_pressures_keep(p, MAX_FIRST_DEFICIT, FULL_ROUNDS, FIRST_ROUNDS, &is_kept,
+                                    desc, err);
+}
+
+bool cwi_label_pressures_init(cwi_label_pressures *p)
+{
+    const cw_label_surfaces *f = p->moves.surfaces;
+    p->labels = f->label_count;
+    if (!cwi_label_moves_init(&p->moves))
         return false;
-    memset(s->directions, 0, vertices * sizeof *s->directions);
-    s->curve_count = 0;
-    for (size_t v = 0; v < vertices; v++)
-        if (kinds[v] != 0 && !(kinds[v] & CWI_NET_FIXED))
-            s->curve[s->curve_count++] = (uint32_t)v;
+    p->sides = cwi_alloc_array(f->patch_count, sizeof *p->sides);
+    p->deficits = cwi_alloc_zeroed(p->labels + 1, sizeof *p->deficits);
+    p->are_active = cwi_alloc_zeroed(p->labels + 1, sizeof *p->are_active);
+    p->active = cwi_alloc_array(f->patch_count, sizeof *p->active);
+    p->weights = cwi_alloc_array(f->patch_count, sizeof *p->weights);
+    p->pressures = cwi_alloc_zeroed(4 * (p->labels + 1), sizeof *p->pressures);
+    if (!p->sides || !p->deficits || !p->are_active || !p->active || !p->weights ||
+        !p->pressures)
+        return false;
     for (size_t n = 0; n < f->patch_count; n++)
         for (int side = 0; side < 2; side++)
-            s->sides[n][side] = number_of(f, f->patches[n].labels[side]);
+            p->sides[n][side] = (uint32_t)cwi_find_label(f, f->patches[n].labels[side]);
     return true;
 }
 
-cw_status cwi_labels_keep_volumes(cwi_label_net *net, const float *originals,
-                                  cw_label_surfaces *surfaces, const cw_labels_desc *desc,
-                                  const size_t dim[3], cw_error *err)
+void cwi_label_pressures_free(cwi_label_pressures *p)
 {
-    volume_solver s = {.net = net,
-                       .surfaces = surfaces,
-                       .originals = originals,
-                       .bound = (float)desc->max_move,
-                       .side = cwi_affine_determinant(surfaces->mesh.affine[0]) < 0 ? -1 : 1,
-                       .dim = dim,
-                       .labels = surfaces->label_count};
-    cw_status st = prepare_solver(&s) ? restore_volumes(&s, desc, err) : cwi_fail_memory(err);
-    cwi_free(s.directions);
-    cwi_free(s.volumes);
-    cwi_free(s.areas);
-    cwi_free(s.alignments);
-    cwi_free(s.requests);
-    cwi_free(s.patch_counts);
-    cwi_free(s.sides);
-    cwi_free(s.pressures);
-    cwi_free(s.curve);
-    cwi_free(s.moves);
-    return st;
+    cwi_label_moves_free(&p->moves);
+    cwi_free(p->sides);
+    cwi_free(p->deficits);
+    cwi_free(p->are_active);
+    cwi_free(p->active);
+    cwi_free(p->weights);
+    cwi_free(p->pressures);
+    p->sides = NULL;
+    p->deficits = p->weights = p->pressures = NULL;
+    p->are_active = NULL;
+    p->active = NULL;
 }

@@ -13,14 +13,14 @@ extern "C" {
 /* Places that arrays of originals and of the mesh have beyond those of its vertices. */
 enum { CWI_SPARE_POSITIONS = 2 };
 
-/* Smooths places, counted in voxels, of the vertices of surfaces->mesh. Volumes of labels become
- * those of their voxels, unless borders are open; no vertex moves farther than desc->max_move
- * along an axis.
- * net        finished; its neighbours are no longer needed, and give their memory
+/* Smooths places, counted in voxels, of the vertices of surfaces->mesh. No vertex moves farther than
+ * desc->max_move along an axis.
+ * net        finished; its neighbours are no longer needed
  * originals  the places before; dim: of the volume; desc->max_move: the bound itself
- * Returns  CW_ERR_NO_MEMORY; CW_ERR_CANCELLED */
+ * spare      memory for as many places
+ * Returns  CW_ERR_CANCELLED */
 CW_NODISCARD cw_status cwi_labels_smooth(cwi_label_net *net, const float *originals,
-                                         cw_label_surfaces *surfaces,
+                                         float *spare, cw_label_surfaces *surfaces,
                                          const cw_labels_desc *desc, const size_t dim[3],
                                          cw_error *err);
 

@@ -1,6 +1,7 @@
 /* Finishes the surfaces of labels: interfaces are simplified together, then each label gets its mesh. */
 #include "core/base/memory.h"
 #include "core/base/status.h"
+#include "extract/pipeline/label_copier.h"
 #include "extract/pipeline/stages.h"
 
 /* Counts the triangles of all interfaces. */
@@ -93,14 +94,15 @@ static cw_status simplify_apart(cwi_pipeline *p, size_t all, cw_mesh *mesh, cw_m
     return CW_OK;
 }
 
-static cw_status finish_label(cwi_pipeline *p, cw_pipeline_surface *surface, size_t all,
-                              cw_pipeline_sink sink, cw_error *err)
+/* Makes the mesh of label n of a layer. */
+static cw_status finish_label(cwi_pipeline *p, cwi_label_copier *copier, size_t n,
+                              cw_pipeline_surface *surface, size_t all, cw_pipeline_sink sink,
+                              cw_error *err)
 {
-    const cw_pipeline_labels *l = p->labels;
     const cw_label_surfaces *of_full = p->full_labels ? &p->full_labels[surface->layer] : NULL;
     cw_mesh full = {0};
-    cw_status st = cw_label_mesh(l->layers[surface->layer], surface->label, surface->mesh, err);
-    if (st == CW_OK && l->apart)
+    cw_status st = cwi_label_copier_copy(copier, n, surface->mesh, err);
+    if (st == CW_OK && p->labels->apart)
         st = simplify_apart(p, all, surface->mesh, &full, err);
     else if (st == CW_OK && of_full && of_full->mesh.triangle_count)
         st = cw_label_mesh(of_full, surface->label, &full, err);
@@ -111,6 +113,27 @@ static cw_status finish_label(cwi_pipeline *p, cw_pipeline_surface *surface, siz
     return st;
 }
 
+/* Makes the mesh of each label of a layer, and gives it away. */
+static cw_status finish_layer(cwi_pipeline *p, size_t level, size_t layer, size_t all,
+                              cw_pipeline_sink sink, cw_error *err)
+{
+    const cw_pipeline_labels *l = p->labels;
+    const cw_label_surfaces *s = l->layers[layer];
+    cwi_label_copier copier;
+    cw_status st = cwi_label_copier_init(&copier, s) ? CW_OK : cwi_fail_memory(err);
+    for (size_t n = 0; n < s->label_count && st == CW_OK; n++) {
+        cw_mesh mesh = {0};
+        cw_pipeline_surface surface = {
+            .mesh = &mesh, .level = level, .layer = layer, .label = s->labels[n].label};
+        if (l->wants && !l->wants(l->user, layer, surface.label))
+            continue;
+        st = finish_label(p, &copier, n, &surface, all, sink, err);
+        cw_mesh_free(&mesh);
+    }
+    cwi_label_copier_free(&copier);
+    return st;
+}
+
 /* Makes the mesh of each label, and gives it away. */
 static cw_status finish_labels(cwi_pipeline *p, size_t level, cw_pipeline_sink sink,
                                cw_error *err)
@@ -118,18 +141,8 @@ static cw_status finish_labels(cwi_pipeline *p, size_t level, cw_pipeline_sink s
     const cw_pipeline_labels *l = p->labels;
     const size_t all = l->apart ? count_surfaces(l) : 0;
     cw_status st = CW_OK;
-    for (size_t n = 0; n < l->layer_count; n++)
-        for (size_t k = 0; k < l->layers[n]->label_count && st == CW_OK; k++) {
-            cw_mesh mesh = {0};
-            cw_pipeline_surface surface = {.mesh = &mesh,
-                                           .level = level,
-                                           .layer = n,
-                                           .label = l->layers[n]->labels[k].label};
-            if (l->wants && !l->wants(l->user, n, surface.label))
-                continue;
-            st = finish_label(p, &surface, all, sink, err);
-            cw_mesh_free(&mesh);
-        }
+    for (size_t n = 0; n < l->layer_count && st == CW_OK; n++)
+        st = finish_layer(p, level, n, all, sink, err);
     return st;
 }
 

@@ -61,13 +61,19 @@ typedef struct cw_label_surfaces {
  * label are joined if an edge of tetrahedra joins them: along an axis, or along a diagonal that
  * rises along two or three axes. Across the other diagonals they are apart. Where a cube of
  * tetrahedra can be one point without a change of topology, it is: then the surface is that of
- * surface nets, with a vertex in the middle of the cube.
+ * surface nets, with a vertex in the middle of the cube. At the volume's border other cubes are two
+ * prisms, with a vertex each.
  *
- * Smoothing moves vertices towards the mean of those in the cubes beside, 16 times, and those
+ * Smoothing moves vertices towards the mean of those in the cubes beside, ten times, and those
  * on curves where three labels meet along the curves, each within max_move of where it was. Then
  * pressures, which move each interface along its normal by the difference of its labels'
  * pressures, preserve the volume of every label's voxels, except for open borders. Where
- * triangles would cross, vertices go back. In cubes with more than one vertex they stay.
+ * triangles would cross, vertices go back, and others make up for the volume. In cubes with more than
+ * one vertex they stay. Every label has the volume of its voxels to 0.5 %, unless max_move does not
+ * allow it, or it is a few voxels that touch in edges: cw_label_volumes() tells.
+ *
+ * Where a label reaches the volume's border, a cap closes it half a voxel beyond: flat, with straight
+ * edges and sharp corners, so that those of neighbouring crops lie in one plane.
  *
  * Vertices are in the world (LPS, millimetres).
  *
@@ -91,7 +97,7 @@ CW_NODISCARD CW_API cw_status cw_extract_labels(const cw_volume *volume,
  *
  * source   borrowed; at least 1 voxel along each axis
  * Returns  as cw_extract_labels(); or what source returned
- * Cost     memory: 32 MiB of slices, or 19 if those are more; 18 bytes a thread for each voxel of a
+ * Cost     memory: 32 MiB of slices, or 19 if those are more; 22 bytes a thread for each voxel of a
  *          slice; the surfaces */
 CW_NODISCARD CW_API cw_status cw_extract_labels_stream(const cw_slice_source *source,
                                                        const cw_labels_desc *desc,
@@ -192,6 +198,12 @@ CW_NODISCARD CW_API cw_status cw_label_colored_mesh(const cw_label_surfaces *sur
 /* Returns the area of a patch in square millimetres. */
 CW_API double cw_label_patch_area(const cw_label_surfaces *surfaces,
                                   const cw_label_patch *patch);
+
+/* Measures the volumes that the surfaces of all labels enclose, in cubic millimetres. Volumes of labels
+ * that are open at the volume's border mean nothing.
+ * volumes  filled: label_count, of surfaces->labels
+ * Cost     in proportion to the triangles */
+CW_API void cw_label_volumes(const cw_label_surfaces *surfaces, double *volumes);
 
 /* Targets of a simplification of label surfaces. Zero-initialise the struct and set what you
  * need. At least one of error_mm, triangles and ratio is needed. The first one reached ends the

@@ -4480,6 +4480,7 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "cw_label_patch_mesh": (c_int, [POINTER(cw_label_surfaces), POINTER(cw_label_patch), POINTER(cw_mesh), POINTER(cw_error)]),
     "cw_label_colored_mesh": (c_int, [POINTER(cw_label_surfaces), POINTER(c_uint8 * 4), POINTER(cw_mesh), POINTER(cw_error)]),
     "cw_label_patch_area": (c_double, [POINTER(cw_label_surfaces), POINTER(cw_label_patch)]),
+    "cw_label_volumes": (None, [POINTER(cw_label_surfaces), POINTER(c_double)]),
     "cw_label_simplify": (c_int, [POINTER(cw_label_surfaces), POINTER(cw_label_simplify_desc), POINTER(cw_label_surfaces), POINTER(cw_error)]),
     "cw_level_set_available": (c_bool, []),
     "cw_level_set_from_mesh": (c_int, [POINTER(cw_mesh), POINTER(cw_level_set_desc), POINTER(cw_volume), POINTER(cw_error)]),

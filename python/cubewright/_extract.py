@@ -6,7 +6,7 @@ import operator
 import threading
 import weakref
 from collections.abc import Iterable, Sequence
-from ctypes import POINTER, byref, c_size_t, c_uint32, memmove, memset, pointer, sizeof
+from ctypes import POINTER, byref, c_double, c_size_t, c_uint32, memmove, memset, pointer, sizeof
 from dataclasses import dataclass
 from typing import Any, Union
 
@@ -381,6 +381,12 @@ class LabelSurfaces:
         value = find_value("label", label, self._ids, self._values)
         call(lib.cw_label_mesh, byref(self._struct), value, byref(out))
         return Mesh._from_c(out)
+
+    def volumes(self) -> dict[int, float]:
+        """Returns the volume that the surface of each label encloses, in cubic millimetres."""
+        out = (c_double * len(self.voxels))()
+        lib.cw_label_volumes(byref(self._struct), out)
+        return dict(zip(self.voxels, out))
 
     def meshes(self) -> dict[int, Mesh]:
         """Returns the closed mesh of each label."""

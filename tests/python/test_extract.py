@@ -202,6 +202,7 @@ class Surfaces(Case):
         self.assertEqual(found.voxels, counts)
         for label, mesh in found.meshes().items():
             self.assertAlmostEqual(cw.check(mesh).quality["volume_mm3"] / counts[label], 1, 2)
+            self.assertAlmostEqual(found.volumes()[label] / counts[label], 1, 2)
         self.assertEqual(sum(p.count for p in found.patches), len(found.shared.triangles))
         meetings = cw.contacts(list(found.meshes().values()))
         self.assertEqual(meetings["shared"], sum(p.count for p in found.patches if 0 not in p.labels))

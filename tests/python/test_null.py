@@ -16,6 +16,7 @@ NEEDS_POINTERS = {
     "cw_field_value",
     "cw_label_color",
     "cw_label_patch_area",
+    "cw_label_volumes",
     "cw_image_place",
     "cw_check_paints",
     "cw_features",
