@@ -67,21 +67,20 @@ static bool load_piece(const rows *r, ptrdiff_t row, size_t x, cwi_id_census *ce
     return good == *count;
 }
 
-/* Adds the numbers of all voxels to a census. *is_whole is false where one is no whole number, which
- * is left to those who take labels. */
-static cw_status take_census(const rows *r, cwi_id_census *census, bool *is_whole,
-                             cw_error *err)
+/* Adds the numbers of all voxels to a census. */
+static cw_status take_census(const rows *r, cwi_id_census *census, cw_error *err)
 {
+    const cw_volume *v = r->v;
     int64_t piece[PIECE];
     size_t place[3], count = 0;
     cw_status st = CW_OK;
-    *is_whole = true;
-    for (size_t n = 0; n < count_rows(r) && st == CW_OK && *is_whole; n++) {
+    for (size_t n = 0; n < count_rows(r) && st == CW_OK; n++) {
         const ptrdiff_t row = find_row(r, n, place);
-        for (size_t x = 0; x < r->v->dim[0] && st == CW_OK && *is_whole; x += count) {
-            *is_whole = load_piece(r, row, x, census, piece, &count, place);
-            if (*is_whole)
-                st = cwi_id_add(census, piece, count, err);
+        for (size_t x = 0; x < v->dim[0] && st == CW_OK; x += count) {
+            const bool is_whole = load_piece(r, row, x, census, piece, &count, place);
+            const char *at = (const char *)v->data + row + (ptrdiff_t)place[0] * v->stride[0];
+            st = is_whole ? cwi_id_add(census, piece, count, err)
+                          : fail_voxel(v, at, place, no_whole, err);
         }
     }
     return st;
@@ -161,23 +160,19 @@ cw_status cwi_renumber_volume(const cw_read_desc *desc, cw_volume *volume, cw_er
     const rows r = {&before, before.components ? before.components : 1,
                     before.steps ? before.steps : 1};
     cwi_id_census census = {.is_unsigned = is_unsigned(volume), .rounds = desc->round_labels};
-    bool is_whole;
     if (volume->cells || volume->sparse || !cwi_id_may_replace(volume))
         return CW_OK;
     if (!volume->data) {
         renumber_shape(volume);
         return CW_OK;
     }
-    cw_status st = take_census(&r, &census, &is_whole, err);
+    cw_status st = take_census(&r, &census, err);
     const bool is_needed =
-        is_whole && (census.has_outside || census.rounded > 0 || cwi_id_is_wide(volume->type));
+        census.has_outside || census.rounded > 0 || cwi_id_is_wide(volume->type);
     if (st == CW_OK && is_needed)
         st = cwi_id_list(&census, desc->ids, err);
     if (st == CW_OK && is_needed)
         st = replace_voxels(&r, &census, &census.places, volume, err);
-    else if (st == CW_OK && cwi_id_is_wide(volume->type))
-        st = cwi_fail(err, CW_ERR_UNSUPPORTED,
-                      "integers of 64 bits with a scale whose values are not whole");
     cwi_id_places_free(&census.places);
     if (st != CW_OK) {
         cw_volume_free(volume);

@@ -5,8 +5,8 @@
 #include <cubewright/formats.h>
 
 /* Replaces the voxels of a volume that was read with desc->ids, and fills them. On failure the volume
- * is freed. Returns CW_ERR_NO_MEMORY; CW_ERR_LIMIT; CW_ERR_ARGUMENT: with round_labels, a voxel that
- * is no number */
+ * is freed. Returns CW_ERR_NO_MEMORY; CW_ERR_LIMIT; CW_ERR_ARGUMENT: a voxel that is no whole
+ * number */
 CW_NODISCARD cw_status cwi_renumber_volume(const cw_read_desc *desc, cw_volume *volume,
                                            cw_error *err);
 

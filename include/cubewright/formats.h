@@ -151,7 +151,7 @@ typedef struct cw_read_desc {
                           in it. cw_volume_visit() takes it as it is. Default: integers of 64 bits that
                           do not fit 32 are CW_ERR_FORMAT */
     bool round_labels; /* with ids: values that are not whole are rounded to the nearest, and
-                          counted in it. Default: they stay */
+                          counted in it. Default: CW_ERR_ARGUMENT, naming the voxel */
 } cw_read_desc;
 
 /* Reads a volume: the whole file or a region of it, every component and time step.

@@ -38,7 +38,7 @@ sed -n -e '/"voids_filled"/,/}/p' -e '/"fill_voids"/p' r.json
 cubewright check filled.ply --source ball.nrrd --iso 0 --fill-voids | grep -o -e '^filled.ply: [^;]*' -e 'topology *as the field.*'
 cubewright check filled.ply --fill-voids || echo "exit $?"
 bad ct.nrrd --iso 300 -o bad.ply --fill-voids --stream always
-bad ct.nrrd --labels all -o bad.ply --fill-voids
+bad ct.nrrd --labels all -o bad.ply --fill-voids --stream always
 # at the volume's border: cavities in solids that are capped are filled, one that the border cuts open is none
 shell() {
     printf 'NRRD0005\ntype: uint8\ndimension: 3\nsizes: 10 10 %d\nencoding: ascii\n\n' "$1"
