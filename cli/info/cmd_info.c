@@ -187,19 +187,6 @@ static cw_status predict_extract(const info_args *args, size_t program_bytes, cl
     return st == CW_OK && iso.count ? cli_predict(&desc, &f->volume, &f->predictions, err) : st;
 }
 
-/* Reads the voxels. Integers that do not fit 32 bits can be numbers of labels. */
-static cw_status read_values(const char *path, cli_input *input, cli_volume *volume,
-                             cw_error *err)
-{
-    cw_error other;
-    cw_status st = cli_read_volume(path, input, false, volume, err);
-    if (st != CW_ERR_FORMAT)
-        return st;
-    input->of_labels = input->is_quiet = true;
-    input->array.component.given = true;
-    return cli_read_volume(path, input, false, volume, &other) == CW_OK ? CW_OK : st;
-}
-
 static cw_status find_facts(const info_args *args, cli_info_facts *f, cw_error *err)
 {
     const int threads = (int)args->input.threads;
@@ -207,7 +194,7 @@ static cw_status find_facts(const info_args *args, cli_info_facts *f, cw_error *
     const double start = cli_seconds();
     cli_input input = args->input;
     input.sample = !args->deep && !args->levels && !args->within;
-    cw_status st = read_values(args->common.inputs[0], &input, &f->volume, err);
+    cw_status st = cli_read_any_volume(args->common.inputs[0], &input, &f->volume, err);
     f->read_seconds = cli_seconds() - start;
     if (st != CW_OK)
         return st;

@@ -69,7 +69,7 @@ cw_status cli_read_step(cli_source *source, const cli_input *input, size_t step,
     if (source->volume.voxels.data && source->volume.path == moment->path)
         return cli_choose_step(&at, moment->step, &source->volume, err);
     cli_free_volume(&source->volume);
-    return cli_read_volume(moment->path, &at, false, &source->volume, err);
+    return cli_read_any_volume(moment->path, &at, &source->volume, err);
 }
 
 /* Reads a step to count its values alone. */

@@ -464,6 +464,19 @@ cw_status cli_read_volume(const char *path, const cli_input *input, bool header_
     return st;
 }
 
+cw_status cli_read_any_volume(const char *path, const cli_input *input, cli_volume *volume,
+                              cw_error *err)
+{
+    cli_input labels = *input;
+    cw_error other;
+    cw_status st = cli_read_volume(path, input, false, volume, err);
+    if (st != CW_ERR_FORMAT)
+        return st;
+    labels.of_labels = labels.is_quiet = true;
+    labels.array.component.given = true;
+    return cli_read_volume(path, &labels, false, volume, &other) == CW_OK ? CW_OK : st;
+}
+
 typedef struct slice_visit {
     const cli_volume *volume;
     const cli_input *input;

@@ -322,6 +322,10 @@ cw_read_desc cli_read_desc(const cli_input *input);
 CW_NODISCARD cw_status cli_read_volume(const char *path, const cli_input *input,
                                        bool header_only, cli_volume *volume, cw_error *err);
 
+/* Reads a volume to look at: integers that do not fit 32 bits are taken as numbers of labels. */
+CW_NODISCARD cw_status cli_read_any_volume(const char *path, const cli_input *input,
+                                           cli_volume *volume, cw_error *err);
+
 /* All voxels of what --crop left a part of, without a word: the file was told of. Free with
  * cli_free_volume(). */
 CW_NODISCARD cw_status cli_read_whole(const cli_volume *part, const cli_input *input,
