@@ -235,7 +235,7 @@ static const cli_rule rules[] = {
      "labels"},
     {"labels", CLI_EXCLUDES,
      "iso inside topology placement snap profile=print max-error pixel-error shading size no-measure fps "
-     "steps animate pvd prove-crop pivot component=mag resample denoise remove-table mask mask-open mask-close"},
+     "steps animate pvd prove-crop pivot component=mag denoise remove-table mask mask-open mask-close"},
     {"per-label", CLI_NEEDS, "simplify"},
     {"per-label", CLI_EXCLUDES, "shared-faces"},
     {"lod", CLI_EXCLUDES,

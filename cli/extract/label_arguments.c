@@ -27,6 +27,16 @@ static cw_status check_lod(const cli_extract_args *args, cw_error *err)
     return cli_check_lod(&args->lod, err);
 }
 
+static cw_status check_resample(const cli_resample *resample, cw_error *err)
+{
+    if (resample->given && resample->has_kernel && !resample->of_labels)
+        return cwi_fail(err, CW_ERR_ARGUMENT,
+                        "--resample %s: linear, cubic and lanczos make means of values; labels "
+                        "take majority (the default) or nearest",
+                        cli_resample_text(resample));
+    return CW_OK;
+}
+
 cw_status cli_check_label_args(const cli_extract_args *args, cw_error *err)
 {
     if (!args->output)
@@ -39,7 +49,9 @@ cw_status cli_check_label_args(const cli_extract_args *args, cw_error *err)
     surface.least = (cli_amount){0};
     surface.largest = 0;
     surface.fill_voids = false;
-    cw_status st = cli_check_stages(&surface, CW_SOURCE_LABELS, err);
+    cw_status st = check_resample(&args->input.resample, err);
+    if (st == CW_OK)
+        st = cli_check_stages(&surface, CW_SOURCE_LABELS, err);
     if (st == CW_OK)
         st = check_lod(args, err);
     if (st != CW_OK)
@@ -48,6 +60,10 @@ cw_status cli_check_label_args(const cli_extract_args *args, cw_error *err)
         return cwi_fail(err, CW_ERR_ARGUMENT,
                         "--stream always cannot be combined with --min-volume, --largest and "
                         "--fill-voids: voxels of labels are cleaned in memory");
+    if (args->stream == CLI_STREAM_ALWAYS && args->input.resample.given)
+        return cwi_fail(err, CW_ERR_ARGUMENT,
+                        "--stream always cannot be combined with --resample: voxels of labels "
+                        "are sampled in memory");
     if (args->per_label && !cw_simplify_available())
         return cwi_fail(err, CW_ERR_UNSUPPORTED,
                         "--per-label needs OpenMesh, which this build lacks: install "

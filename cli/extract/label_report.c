@@ -23,7 +23,7 @@ static const double MAX_VOLUME_ERROR = 0.005;
 /* Returns the volume of a voxel in cubic millimetres; NAN where voxels differ in size. */
 static double voxel_mm3(const cli_label_run *r)
 {
-    const cw_volume *v = &r->volume.view;
+    const cw_volume *v = cli_label_grid(r);
     for (int a = 0; a < 3; a++)
         if (v->coordinates[a])
             return NAN;
@@ -216,6 +216,11 @@ void cli_put_label_params(cli_json *j, const void *p, const cli_made *made)
     const cli_label_run *r = p;
     (void)made;
     cli_json_text(j, "labels", r->args->labels);
+    if (r->args->input.resample.given) {
+        cli_resample resample = r->args->input.resample;
+        resample.of_labels = true;
+        cli_json_text(j, "resample", cli_resample_text(&resample));
+    }
     cli_json_number(j, "smooth_labels_voxels", r->max_move);
     if (r->error_mm > 0)
         cli_json_number(j, "simplify_error_mm", r->error_mm);

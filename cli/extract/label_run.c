@@ -6,6 +6,7 @@
 #include "cli/framework/console.h"
 #include "cli/inputs/extract_surface.h"
 #include "cli/inputs/label_scene.h"
+#include "cli/inputs/volume_prepare.h"
 #include "cli/results/stage_facts.h"
 #include "core/base/memory.h"
 #include "core/base/status.h"
@@ -47,7 +48,8 @@ static cw_status read_label_map(cli_label_run *r, cw_error *err)
     cli_input input = args->input;
     input.array.component.given = true; /* all are taken, unless one was stated */
     input.stream = args->stream;
-    input.may_stream = !cli_cleans_labels(args);
+    input.may_stream = !cli_cleans_labels(args) && !args->input.resample.given;
+    input.resample.given = input.resample.of_labels = false; /* of labels it comes later */
     input.of_labels = true;
     cli_report_begin(&r->report);
     cw_status st = cli_read_volume(args->common.inputs[0], &input, false, &r->volume, err);
@@ -73,9 +75,17 @@ static cw_status read_label_map(cli_label_run *r, cw_error *err)
                                &r->choice, err);
     if (st == CW_OK)
         st = expect_labels(r, err);
-    return st == CW_OK
-               ? cli_find_label_move(&args->smooth_labels, r->volume.spacing, &r->max_move, err)
-               : st;
+    double spacing[3], old[3];
+    memcpy(spacing, r->volume.spacing, sizeof spacing);
+    if (args->input.resample.given)
+        cli_resample_spacing(&args->input.resample, v, old, spacing);
+    return st == CW_OK ? cli_find_label_move(&args->smooth_labels, spacing, &r->max_move, err)
+                       : st;
+}
+
+const cw_volume *cli_label_grid(const cli_label_run *r)
+{
+    return r->grid.dim[0] ? &r->grid : &r->volume.view;
 }
 
 /* An extraction of slices. */
@@ -90,8 +100,25 @@ static cw_status extract_slices(void *user, const cw_slice_source *source, cw_er
     return cw_extract_labels_stream(source, s->desc, s->surfaces, err);
 }
 
+/* Extracts the interfaces of a component whose voxels are in memory. */
+static cw_status extract_view(cli_label_run *r, const cw_volume *view, uint32_t number,
+                              const cw_labels_desc *desc, cli_label_layer *layer, cw_error *err)
+{
+    cw_volume sampled = {0};
+    cw_status st = CW_OK;
+    if (r->args->input.resample.given) {
+        st = cli_resample_labels(r, view, number, desc, &sampled, err);
+        view = &sampled;
+    }
+    if (st == CW_OK)
+        st = cli_cleans_labels(r->args) ? cli_clean_and_extract(r, view, desc, layer, err)
+                                        : cw_extract_labels(view, desc, &layer->surfaces, err);
+    cw_volume_free(&sampled);
+    return st;
+}
+
 /* Extracts the interfaces of one component from its voxels, or from slices. */
-static cw_status extract_component(const cli_label_run *r, uint32_t number,
+static cw_status extract_component(cli_label_run *r, uint32_t number,
                                    const cw_labels_desc *desc, cli_label_layer *layer,
                                    cw_error *err)
 {
@@ -107,9 +134,7 @@ static cw_status extract_component(const cli_label_run *r, uint32_t number,
     const cw_volume all = view;
     if (st == CW_OK && input.coarsen_view)
         st = cw_volume_coarsen(&all, r->volume.coarsen, &view, err);
-    if (st == CW_OK && cli_cleans_labels(r->args))
-        return cli_clean_and_extract(r, &view, desc, layer, err);
-    return st == CW_OK ? cw_extract_labels(&view, desc, &layer->surfaces, err) : st;
+    return st == CW_OK ? extract_view(r, &view, number, desc, layer, err) : st;
 }
 
 /* Extracts the interfaces of one component of the volume. */
@@ -160,10 +185,9 @@ static cw_status extract_layers(cli_label_run *r, cw_error *err)
     cli_report_begin(&r->report);
     for (size_t c = first; c < end && st == CW_OK; c++)
         st = extract_layer(r, (uint32_t)c, err);
+    const size_t *dim = cli_label_grid(r)->dim;
     if (st == CW_OK)
-        cli_report_end(&r->report, "extract",
-                       r->volume.view.dim[0] * r->volume.view.dim[1] * r->volume.view.dim[2],
-                       r->triangles);
+        cli_report_end(&r->report, "extract", dim[0] * dim[1] * dim[2], r->triangles);
     return st;
 }
 

@@ -32,6 +32,7 @@ typedef struct cli_label_item {
 typedef struct cli_label_run {
     const cli_extract_args *args;
     cli_volume volume;
+    cw_volume grid; /* of the voxels that --resample made, without them; else zeroed */
     cli_label_names names;
     cli_label_choice choice;
     double max_move; /* of smoothing, in voxels; 0: off */
@@ -61,6 +62,22 @@ CW_NODISCARD cw_status cli_clean_and_extract(const cli_label_run *run, const cw_
 
 /* Says what cleaning changed, and which labels it removed. */
 void cli_tell_cleaning(const cli_label_run *run);
+
+/* Samples the labels of a component at other distances, says how, and which labels are lost by it.
+ * desc     the labels to be extracted
+ * sampled  filled on success; free it with cw_volume_free()
+ * Returns  as cw_labels_resample() */
+CW_NODISCARD cw_status cli_resample_labels(cli_label_run *run, const cw_volume *view,
+                                           uint32_t layer, const cw_labels_desc *desc,
+                                           cw_volume *sampled, cw_error *err);
+
+/* Adds the number and the name of a label to a list; without room for them it ends with "...". */
+enum { CLI_LABEL_LIST = 200 };
+void cli_list_label(const cli_label_run *run, uint32_t layer, uint32_t value,
+                    char list[CLI_LABEL_LIST]);
+
+/* Returns the voxels that are extracted: of the file, or those of --resample. */
+const cw_volume *cli_label_grid(const cli_label_run *run);
 
 /* Finds what cleaning changed of an item; NULL: nothing was cleaned. */
 const cw_label_change *cli_find_label_change(const cli_label_item *item);

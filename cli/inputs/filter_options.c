@@ -6,18 +6,26 @@
 #include "core/base/text.h"
 
 #include <cubewright/filter.h>
+#include <cubewright/labels.h>
 #include <cubewright/smooth.h>
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
-static bool parse_kernel(const char *text, int *kernel)
+/* Parses a kernel of values, or one of labels. */
+static bool parse_kernel(const char *text, cli_resample *out)
 {
-    for (*kernel = 0; *kernel < CW_KERNEL_COUNT; ++*kernel)
-        if (strcmp(text, cw_kernel_name((cw_kernel)*kernel)) == 0)
-            return true;
-    return false;
+    for (int k = 0; k < CW_KERNEL_COUNT && !out->has_kernel; k++) {
+        out->has_kernel = strcmp(text, cw_kernel_name((cw_kernel)k)) == 0;
+        out->kernel = out->has_kernel ? k : out->kernel;
+    }
+    for (int k = 0; k < CW_LABEL_KERNEL_COUNT && !out->has_kernel; k++) {
+        out->has_kernel = out->of_labels =
+            strcmp(text, cw_label_kernel_name((cw_label_kernel)k)) == 0;
+        out->label_kernel = out->of_labels ? k : out->label_kernel;
+    }
+    return out->has_kernel;
 }
 
 static bool parse_resample(const cli_option *o, const char *text, void *field)
@@ -37,7 +45,7 @@ static bool parse_resample(const cli_option *o, const char *text, void *field)
     out->given = out->iso || cli_parse_lengths(lengths, &mm);
     for (int a = 0; a < 3 && out->given && !out->iso; a++)
         out->mm[a] = mm.mm[a];
-    return out->given = out->given && (!colon || parse_kernel(colon + 1, &out->kernel));
+    return out->given = out->given && (!colon || parse_kernel(colon + 1, out));
 }
 
 enum { DEFAULT_STEPS = 10, MOST_STEPS = 100, MOST_RADIUS = 3 };
@@ -106,7 +114,8 @@ static bool parse_denoise(const cli_option *o, const char *text, void *field)
 const char *cli_resample_text(const cli_resample *r)
 {
     static char text[128];
-    const char *kernel = cw_kernel_name((cw_kernel)r->kernel);
+    const char *kernel = r->of_labels ? cw_label_kernel_name((cw_label_kernel)r->label_kernel)
+                                      : cw_kernel_name((cw_kernel)r->kernel);
     if (r->iso)
         snprintf(text, sizeof text, "iso:%s", kernel);
     else
@@ -234,15 +243,26 @@ const char *cli_plane_text(const cli_plane *plane)
         if (value->given)                                                                      \
             snprintf(text, size, "%s", cli_##name##_text(value));                              \
     }
-PRINTER(resample)
 PRINTER(denoise)
 PRINTER(smoothing)
 PRINTER(plane)
 
+/* The kernel that is taken without one depends on what is sampled: values, or labels. */
+static void print_resample(const cli_option *o, const void *field, char *text, size_t size)
+{
+    const cli_resample *r = field;
+    (void)o;
+    if (!r->given)
+        return;
+    const char *all = cli_resample_text(r);
+    const size_t length = r->has_kernel ? strlen(all) : strcspn(all, ":");
+    snprintf(text, size, "%.*s", (int)length, all);
+}
+
 /* clang-format off */
 const cli_kind cli_kind_resample = {sizeof(cli_resample), parse_resample, print_resample,
     "iso, or a length above 0 with its unit, such as 0.5mm or 1x1x2mm; then a kernel, if not linear: "
-    "0.5mm:cubic, iso:lanczos", CLI_UNITS_MM, CLI_IN_MM};
+    "0.5mm:cubic, iso:lanczos; of labels majority or nearest", CLI_UNITS_MM, CLI_IN_MM};
 const cli_kind cli_kind_denoise = {sizeof(cli_denoise), parse_denoise, print_denoise,
     "nlm or nlm:NOISE, aniso or aniso:STEPS (1 to 100) or aniso:STEPS:CONTRAST, gauss:L such as "
     "gauss:0.7vox or gauss:0.5mm, bilateral:L or bilateral:L:VALUES, or median:N (1 to 3 voxels)",

@@ -15,7 +15,10 @@ extern const cli_kind cli_kind_resample, cli_kind_denoise, cli_kind_smoothing, c
 typedef struct cli_resample {
     bool given, iso; /* iso: the least of the old ones along every axis; else: */
     double mm[3];
-    int kernel; /* cw_kernel */
+    int kernel;       /* cw_kernel, of values */
+    int label_kernel; /* cw_label_kernel */
+    bool has_kernel;  /* one was typed */
+    bool of_labels;   /* that was one of labels */
 } cli_resample;
 
 typedef enum cli_filter { CLI_GAUSS, CLI_MEDIAN, CLI_BILATERAL, CLI_ANISO, CLI_NLM } cli_filter;

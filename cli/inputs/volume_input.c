@@ -451,7 +451,7 @@ cw_status cli_read_volume(const char *path, const cli_input *input, bool header_
     desc.labels = &volume->labels;
     desc.ids = input->of_labels ? &volume->ids : NULL;
     desc.round_labels = input->round_labels;
-    cw_status st = cli_check_inside_options(input, err);
+    cw_status st = cli_check_preparation(input, err);
     if (st == CW_OK)
         st = set_raw(input, &raw, &desc, err);
     if (st == CW_OK)

@@ -116,7 +116,7 @@ typedef struct cli_input {
          CLI_RESAMPLE,                                                                         \
          "iso|L[:KERNEL]",                                                                     \
          "Sample the volume at other distances: iso, 0.5mm, 1x1x2mm; by linear, cubic or "     \
-         "lanczos, such as iso:cubic (off; linear)",                                           \
+         "lanczos, such as iso:cubic; labels by majority or nearest (off; linear, majority)",  \
          CLI_INPUT_ROW(args, resample)},                                                       \
         {"denoise",                                                                            \
          0,                                                                                    \

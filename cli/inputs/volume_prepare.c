@@ -88,15 +88,21 @@ static const char *told_type(const cli_volume *volume)
     return made == volume->view.type ? "" : text;
 }
 
+void cli_resample_spacing(const cli_resample *r, const cw_volume *v, double old[3],
+                          double mm[3])
+{
+    cw_volume_spacing(v, old);
+    for (int a = 0; a < 3; a++)
+        mm[a] = r->iso ? fmin(fmin(old[0], old[1]), old[2]) : r->mm[a];
+}
+
 static cw_status resample_view(const cli_input *input, cli_volume *volume, cw_error *err)
 {
     const cli_resample *r = &input->resample;
     const cw_filter_desc desc = cli_describe_filter(input, volume);
     double old[3], mm[3];
     cw_volume made;
-    cw_volume_spacing(&volume->view, old);
-    for (int a = 0; a < 3; a++)
-        mm[a] = r->iso ? fmin(fmin(old[0], old[1]), old[2]) : r->mm[a];
+    cli_resample_spacing(r, &volume->view, old, mm);
     cw_status st =
         cw_volume_resample(&volume->view, mm, (cw_kernel)r->kernel, &desc, &made, err);
     if (st != CW_OK)
@@ -367,7 +373,7 @@ cw_status cli_prepare_volume(const cli_input *input, cli_volume *volume, cw_erro
     return st;
 }
 
-cw_status cli_check_inside_options(const cli_input *input, cw_error *err)
+cw_status cli_check_preparation(const cli_input *input, cw_error *err)
 {
     const char *option = input->mask               ? "--mask"
                          : input->mask_open.given  ? "--mask-open"
@@ -376,6 +382,11 @@ cw_status cli_check_inside_options(const cli_input *input, cw_error *err)
                                                    : NULL;
     if (option && !input->makes_surface)
         return cwi_fail(err, CW_ERR_ARGUMENT, "%s is for extract and check", option);
+    if (input->resample.of_labels)
+        return cwi_fail(err, CW_ERR_ARGUMENT,
+                        "--resample %s: majority and nearest are for extract --labels; values "
+                        "take linear, cubic or lanczos",
+                        cli_resample_text(&input->resample));
     return CW_OK;
 }
 

@@ -35,6 +35,10 @@ CW_NODISCARD cw_status cli_visit_filtered(const cli_input *input,
                                           const cw_slice_visitor *visitor, cli_visit_all *visit,
                                           const void *user, cw_error *err);
 
+/* Finds the distances of voxels before and after --resample. */
+void cli_resample_spacing(const cli_resample *resample, const cw_volume *volume, double old[3],
+                          double mm[3]);
+
 /* Describes a filter of the view: threads, memory and progress. */
 cw_filter_desc cli_describe_filter(const cli_input *input, const cli_volume *volume);
 
@@ -61,8 +65,9 @@ CW_NODISCARD cw_status cli_prepare_inside(const cli_input *input, cli_volume *vo
                                           const double *levels, size_t count,
                                           bool inside_is_low, cw_error *err);
 
-/* Fails for these options in a command that makes no surface, or without a unit that they take. */
-CW_NODISCARD cw_status cli_check_inside_options(const cli_input *input, cw_error *err);
+/* Fails for options that change what is inside in a command that makes no surface, and for kernels of labels
+ * where values are sampled. */
+CW_NODISCARD cw_status cli_check_preparation(const cli_input *input, cw_error *err);
 
 /* Writes the options as text, such as "median:1", into reports: those that were given. */
 void cli_json_preparation(cli_json *j, const cli_input *input);

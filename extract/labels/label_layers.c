@@ -47,7 +47,7 @@ static size_t load_checked(const cwi_label_layers *l, const char *from, size_t c
     return count;
 }
 
-static size_t load_row(const cwi_label_layers *l, const char *from, uint32_t *out)
+size_t cwi_label_row_load(const cwi_label_layers *l, const char *from, uint32_t *out)
 {
     const cw_volume *v = l->volume;
     const size_t count = v->dim[0];
@@ -112,7 +112,7 @@ bool cwi_label_layer_load(const cwi_label_layers *l, size_t k, uint32_t *out, si
     }
     for (size_t j = 0; j < ny; j++) {
         uint32_t *row = out + (j + 1) * l->width;
-        const size_t good = load_row(l, slice + (ptrdiff_t)j * v->stride[1], row + 1);
+        const size_t good = cwi_label_row_load(l, slice + (ptrdiff_t)j * v->stride[1], row + 1);
         if (good < nx) {
             bad[0] = good, bad[1] = j, bad[2] = at;
             return false;

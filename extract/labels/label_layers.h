@@ -26,6 +26,10 @@ typedef struct cwi_label_layers {
 bool cwi_label_layer_load(const cwi_label_layers *layers, size_t k, uint32_t *out,
                           size_t bad[3]);
 
+/* Loads a row of voxels that begins at `from` into as many labels, all of them wanted. Returns the number
+ * of the first value that is no label, or of all. */
+size_t cwi_label_row_load(const cwi_label_layers *layers, const char *from, uint32_t *out);
+
 /* Fails with CW_ERR_ARGUMENT for a voxel whose value is no label. */
 cw_status cwi_label_fail_voxel(const cwi_label_layers *layers, const size_t bad[3],
                                cw_error *err);

@@ -163,6 +163,53 @@ CW_NODISCARD CW_API cw_status cw_labels_clean(const cw_volume *volume,
 /* Frees the changes of cw_labels_clean(). Harmless on NULL. */
 CW_API void cw_label_changes_free(cw_label_change *changes);
 
+/* How a label map is sampled between its voxels. */
+typedef enum cw_label_kernel {
+    CW_LABEL_KERNEL_MAJORITY, /* the label with the largest share of a Gaussian around */
+    CW_LABEL_KERNEL_NEAREST,  /* the label of the nearest voxel */
+    CW_LABEL_KERNEL_COUNT
+} cw_label_kernel;
+
+/* Returns the name of a kernel, such as "majority"; static. NULL for an unknown one.
+ * kernel  any number */
+CW_API const char *cw_label_kernel_name(cw_label_kernel kernel);
+
+/* Options of sampling a label map at other distances. Zero-initialise the struct and set what you need. */
+typedef struct cw_label_resample_desc {
+    uint32_t version;       /* 0: the first version of this struct */
+    double spacing_mm[3];   /* new distance of voxels along each axis; 0: as it is */
+    cw_label_kernel kernel; /* default: CW_LABEL_KERNEL_MAJORITY */
+    uint32_t background;    /* the label of voxels without a value */
+    int threads;            /* default: one per processor */
+    size_t max_bytes;       /* memory for the result and the work on it; default: no limit */
+    cw_progress progress;   /* default: none */
+} cw_label_resample_desc;
+
+/* Samples a label map at other distances. The grid is that of cw_volume_resample(): the first voxel stays
+ * where it is, and the last sample is not beyond the last voxel.
+ *
+ * By majority, a sample gets the label whose voxels have the largest sum of weights. The weight of a
+ * voxel is a Gaussian of its distance, cut off at four standard deviations. Along each axis one is
+ * half of the old or the new distance between voxels, whichever is larger. Beyond the border voxels go
+ * on as they are there. Of equal sums the label of the nearest voxel wins, else the lowest. Of two
+ * voxels as near as each other the one of the lower index counts as the nearest. The background is a label
+ * like others. No label appears where none of its voxels is within reach. Parts that are thinner than
+ * the new distance may vanish.
+ *
+ * volume   as for cw_extract_labels(); its first component and step. The result of a rectilinear grid is
+ *          evenly spaced, and voxels weigh by their index
+ * desc     borrowed
+ * out      filled with CW_U32 on success, emptied on failure; free it with cw_volume_free()
+ * Returns  CW_ERR_ARGUMENT: a value is no label, naming the voxel; spacing_mm or kernel is none;
+ *          CW_ERR_UNSUPPORTED: sparse and irregular grids; CW_ERR_LIMIT: max_bytes is too low;
+ *          CW_ERR_NO_MEMORY; CW_ERR_CANCELLED
+ * Cost     one pass over the voxels, and up to 125 weights a voxel where labels meet; memory: a thread
+ *          holds some rows of some slices
+ * Threads  the same bytes for any number */
+CW_NODISCARD CW_API cw_status cw_labels_resample(const cw_volume *volume,
+                                                 const cw_label_resample_desc *desc,
+                                                 cw_volume *out, cw_error *err);
+
 /* Frees the surfaces and zeroes the struct. Harmless on a zeroed or already freed one. */
 CW_API void cw_label_surfaces_free(cw_label_surfaces *surfaces);
 

@@ -31,6 +31,7 @@ from ._extract import (
     extract,
     extract_labels,
     extract_levels,
+    resample_labels,
 )
 from ._handles import Closed, close_handles
 from ._library import lib as _lib
@@ -124,6 +125,7 @@ __all__ = [
     "render",
     "repair",
     "report",
+    "resample_labels",
     "simplify",
     "simplify_levels",
     "smooth",

@@ -287,6 +287,12 @@ class cw_keeps(enum.IntEnum):
     CW_KEEPS_ALL = 32767
 
 
+class cw_label_kernel(enum.IntEnum):
+    CW_LABEL_KERNEL_MAJORITY = 0
+    CW_LABEL_KERNEL_NEAREST = 1
+    CW_LABEL_KERNEL_COUNT = 2
+
+
 class cw_infill_kind(enum.IntEnum):
     CW_INFILL_GYROID = 0
     CW_INFILL_SCHWARZ_P = 1
@@ -2798,6 +2804,27 @@ cw_label_change._fields_ = [
 ]
 
 
+class cw_label_resample_desc(Structure):
+    version: int
+    spacing_mm: Any
+    kernel: int
+    background: int
+    threads: int
+    max_bytes: int
+    progress: Any
+
+
+cw_label_resample_desc._fields_ = [
+    ("version", c_uint32),
+    ("spacing_mm", c_double * 3),
+    ("kernel", c_int),
+    ("background", c_uint32),
+    ("threads", c_int),
+    ("max_bytes", c_size_t),
+    ("progress", cw_progress),
+]
+
+
 class cw_label_simplify_desc(Structure):
     version: int
     error_mm: float
@@ -4475,6 +4502,8 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "cw_label_counts_free": (None, [POINTER(cw_label_count)]),
     "cw_labels_clean": (c_int, [POINTER(cw_volume), POINTER(cw_label_clean_desc), POINTER(cw_volume), POINTER(POINTER(cw_label_change)), POINTER(c_size_t), POINTER(cw_error)]),
     "cw_label_changes_free": (None, [POINTER(cw_label_change)]),
+    "cw_label_kernel_name": (c_char_p, [c_int]),
+    "cw_labels_resample": (c_int, [POINTER(cw_volume), POINTER(cw_label_resample_desc), POINTER(cw_volume), POINTER(cw_error)]),
     "cw_label_surfaces_free": (None, [POINTER(cw_label_surfaces)]),
     "cw_label_mesh": (c_int, [POINTER(cw_label_surfaces), c_uint32, POINTER(cw_mesh), POINTER(cw_error)]),
     "cw_label_patch_mesh": (c_int, [POINTER(cw_label_surfaces), POINTER(cw_label_patch), POINTER(cw_mesh), POINTER(cw_error)]),

@@ -29,6 +29,7 @@ from ._options import (
     take_degrees,
     take_flag,
     take_length,
+    take_lengths,
     take_number,
     take_numbers,
     take_space,
@@ -482,6 +483,47 @@ def clean_labels(
     cleaned = Volume._from_c(out)
     cleaned.ids = source.ids
     return cleaned, changes
+
+
+LABEL_KERNELS = ("majority", "nearest")
+
+
+def resample_labels(
+    volume: AnyVolume,
+    spacing: float | str | Sequence[float | str],
+    kernel: str = "majority",
+    *,
+    background: int = 0,
+    component: int = 0,
+    step: int = 0,
+    threads: int = 0,
+    progress: Progress = None,
+) -> Volume:
+    """Samples a label map at other distances: returns a new map, with the same ids.
+
+    volume   as for extract_labels()
+    spacing  between voxels, in mm or as a text with a unit ("0.5mm"): of all axes, or of x, y and z; 0 leaves an axis
+    kernel   majority: the label with the largest share of a Gaussian, whose standard deviation is half of the
+             old or the new distance, whichever is larger; or nearest
+
+    Raises Error: ARGUMENT (a value is no label), UNSUPPORTED, LIMIT, NO_MEMORY, CANCELLED.
+    """
+    source = number_labels(volume)
+    view = source._select(component, step)
+    values = {number: value for value, number in enumerate(source.ids)}
+    reporter = Reporter(progress)
+    desc = c.cw_label_resample_desc(
+        spacing_mm=(c_double * 3)(*take_lengths("spacing", spacing)),
+        kernel=take_choice("kernel", kernel, LABEL_KERNELS),
+        background=find_value("background", background, source.ids, values),
+        threads=take_threads(threads),
+        progress=reporter.struct,
+    )
+    out = Owner(c.cw_volume(), lib.cw_volume_free)
+    reporter.call(lib.cw_labels_resample, byref(view), byref(desc), byref(out.struct))
+    sampled = Volume._from_c(out)
+    sampled.ids = source.ids
+    return sampled
 
 
 def extract_labels(

@@ -235,6 +235,28 @@ class Surfaces(Case):
         hollow[4, 4, 4] = 0
         self.assertEqual(cw.clean_labels(hollow, fill_voids=True)[0].array[4, 4, 4], 5)
 
+    def test_labels_are_sampled_at_other_distances(self):
+        cells = cw.make("labels/cells", dims=20, labels=4, type="u8").array
+        numbers = np.array([0, -5, 2**40, 7, -(2**50)], "i8")[cells]
+        for map, values in ((cells, cells), (numbers, numbers), (cells.astype("f4"), cells)):
+            same = cw.resample_labels(map, 0, "nearest")
+            found = np.array(same.ids)[same.array] if same.ids else same.array
+            np.testing.assert_array_equal(found, values)
+            finer = cw.resample_labels(map, "0.5mm")
+            self.assertEqual(finer.array.shape, (39, 39, 39))
+            self.assertEqual(finer.array.dtype, np.uint32)
+            found = np.array(finer.ids)[finer.array] if finer.ids else finer.array
+            self.assertEqual(set(np.unique(found)), set(np.unique(values)))
+            one = cw.resample_labels(map, 0.5, threads=1)
+            np.testing.assert_array_equal(one.array, finer.array)
+        thick = cw.Volume(np.ascontiguousarray(cells[::3]), spacing=(1, 1, 3))
+        self.assertEqual(cw.resample_labels(thick, (0, 0, 1)).array.shape, (19, 20, 20))
+        self.assertEqual(set(cw.extract_labels(cw.resample_labels(numbers, 2)).voxels), {-5, 2**40, 7, -(2**50)})
+        with self.assertRaises(ValueError):
+            cw.resample_labels(cells, 1, "linear")
+        with self.fails(cw.Status.ARGUMENT):
+            cw.resample_labels(np.full((4, 4, 4), 0.5, "f4"), 0.5)
+
     def test_labels_have_numbers_of_64_bits(self):
         cells = cw.make("labels/cells", dims=24, labels=5, type="u8").array
         small = cw.extract_labels(cells)
