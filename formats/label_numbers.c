@@ -192,7 +192,7 @@ typedef struct replaced_slices {
     char *slice;
 } replaced_slices;
 
-/* Reads a slice as numbers, row by row. take: gets each piece */
+/* Reads a slice as numbers, row by row. to: gets their places; NULL: they are counted */
 static cw_status read_slice(replaced_slices *s, size_t k, uint32_t *to, cw_error *err)
 {
     const cw_volume *v = &s->shape;
