@@ -55,7 +55,8 @@ static ptrdiff_t find_row(const rows *r, size_t n, size_t place[3])
            (ptrdiff_t)(rest / r->components) * v->step_stride;
 }
 
-/* Loads a piece of a row as numbers. Returns false, and sets place[0], where one is none. */
+/* Loads a piece of a row as numbers. Returns false for a voxel that is no whole number, and sets place[0]
+ * to it. */
 static bool load_piece(const rows *r, ptrdiff_t row, size_t x, cwi_id_census *census,
                        int64_t piece[PIECE], size_t *count, size_t place[3])
 {
@@ -87,7 +88,7 @@ static cw_status take_census(const rows *r, cwi_id_census *census, cw_error *err
 }
 
 /* Writes the values of all voxels, packed in the order of rows. */
-static void write_values(const rows *r, cwi_id_census *census, const cwi_id_places *places,
+static void write_values(const rows *r, cwi_id_census *census, const cwi_key_counts *places,
                          uint32_t *to)
 {
     cwi_id_census again = {.rounds = census->rounds};
@@ -116,7 +117,7 @@ static bool is_packed(const rows *r, const cw_volume *v)
 /* Replaces the voxels by values of 32 bits: components and steps one after the other. Where they are so
  * already, it is done in place. */
 static cw_status replace_voxels(const rows *r, cwi_id_census *census,
-                                const cwi_id_places *places, cw_volume *volume, cw_error *err)
+                                const cwi_key_counts *places, cw_volume *volume, cw_error *err)
 {
     const cw_volume *v = r->v;
     const ptrdiff_t size = (ptrdiff_t)sizeof(uint32_t), x = (ptrdiff_t)v->dim[0],
@@ -173,7 +174,7 @@ cw_status cwi_renumber_volume(const cw_read_desc *desc, cw_volume *volume, cw_er
         st = cwi_id_list(&census, desc->ids, err);
     if (st == CW_OK && is_needed)
         st = replace_voxels(&r, &census, &census.places, volume, err);
-    cwi_id_places_free(&census.places);
+    cwi_key_counts_free(&census.places);
     if (st != CW_OK) {
         cw_volume_free(volume);
         cw_label_ids_free(desc->ids);
@@ -187,7 +188,7 @@ cw_status cwi_renumber_volume(const cw_read_desc *desc, cw_volume *volume, cw_er
 typedef struct replaced_slices {
     const cw_slice_source *from;
     cw_volume shape; /* of the source, complete */
-    cwi_id_places places;
+    cwi_key_counts places;
     cwi_id_census census; /* rounds */
     char *slice;
 } replaced_slices;
@@ -264,7 +265,7 @@ cw_status cwi_visit_renumbered(const cw_read_desc *desc, const cw_slice_source *
         st = cwi_id_places_fill(&s.places, desc->ids, err);
     if (st == CW_OK)
         st = visitor->visit(visitor->user, &replaced, err);
-    cwi_id_places_free(&s.places);
+    cwi_key_counts_free(&s.places);
     cwi_free(s.slice);
     return st;
 }
@@ -315,6 +316,6 @@ cw_status cw_label_ids_read(const char *path, const cw_read_desc *desc, size_t s
         st = cwi_visit_stored(path, &d, c, step, &visitor, err);
     if (st == CW_OK && !all.is_done)
         st = cwi_id_list(&all.census, ids, err);
-    cwi_id_places_free(&all.census.places);
+    cwi_key_counts_free(&all.census.places);
     return st;
 }

@@ -8,6 +8,7 @@
 #include "core/base/status.h"
 #include "core/geometry/affine.h"
 #include "core/geometry/box.h"
+#include "core/texture/gather_meshes.h"
 
 #include <cubewright/labels.h>
 
@@ -58,36 +59,70 @@ static cw_status list_labels(const cw_mesh *mesh, uint32_t **labels, size_t *cou
     return CW_OK;
 }
 
-/* Copies the triangles of one label, with their vertices. number: vertex_count, for the work */
-static cw_status copy_label(const cw_mesh *all, uint32_t label, uint32_t *number, cw_mesh *out,
-                            cw_error *err)
+/* Allocates the mesh of a label whose vertices and triangles were counted. */
+static cw_status allocate_label(const cw_mesh *all, cw_mesh *out, cw_error *err)
 {
-    size_t triangles = 0, vertices = 0;
-    for (size_t v = 0; v < all->vertex_count; v++)
-        if (all->labels[v] == label)
-            number[v] = (uint32_t)vertices++;
-    for (size_t t = 0; t < all->triangle_count; t++)
-        triangles += all->labels[all->triangles[3 * t]] == label;
-    *out = (cw_mesh){.vertex_count = vertices, .triangle_count = triangles};
     memcpy(out->origin, all->origin, sizeof out->origin);
     memcpy(out->affine, all->affine, sizeof out->affine);
-    out->positions = cwi_alloc_array(vertices, 3 * sizeof(float));
-    out->triangles = cwi_alloc_array(triangles, 3 * sizeof(uint32_t));
+    out->positions = cwi_alloc_array(out->vertex_count, 3 * sizeof(float));
+    out->triangles = cwi_alloc_array(out->triangle_count, 3 * sizeof(uint32_t));
     if (all->normals)
-        out->normals = cwi_alloc_array(vertices, 3 * sizeof(float));
-    if (!out->positions || !out->triangles || (all->normals && !out->normals))
-        return cwi_fail_memory(err);
-    for (size_t v = 0, to = 0; v < all->vertex_count; v++)
-        if (all->labels[v] == label) {
-            memcpy(out->positions + 3 * to, all->positions + 3 * v, 3 * sizeof(float));
-            if (all->normals)
-                memcpy(out->normals + 3 * to, all->normals + 3 * v, 3 * sizeof(float));
-            to++;
-        }
-    for (size_t t = 0, to = 0; t < all->triangle_count; t++)
-        if (all->labels[all->triangles[3 * t]] == label)
-            for (int c = 0; c < 3; c++)
-                out->triangles[to++] = number[all->triangles[3 * t + (size_t)c]];
+        out->normals = cwi_alloc_array(out->vertex_count, 3 * sizeof(float));
+    return out->positions && out->triangles && (out->normals || !all->normals)
+               ? CW_OK
+               : cwi_fail_memory(err);
+}
+
+/* Finds the solid of a label; NULL: no triangle has that label. */
+static cli_part_check *find_solid(const cli_part_checks *solids, uint32_t label)
+{
+    size_t low = 0, high = solids->count;
+    while (low < high) {
+        const size_t middle = low + (high - low) / 2;
+        if (solids->items[middle].label.value < label)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low < solids->count && solids->items[low].label.value == label ? &solids->items[low]
+                                                                          : NULL;
+}
+
+/* Copies triangles, with their vertices, to the solids of their labels. number: vertex_count, for the work */
+static cw_status copy_labels(const cw_mesh *all, const cli_part_checks *solids,
+                             uint32_t *number, cw_error *err)
+{
+    cw_status st = CW_OK;
+    for (size_t v = 0; v < all->vertex_count; v++) {
+        cli_part_check *solid = find_solid(solids, all->labels[v]);
+        number[v] = solid ? (uint32_t)solid->mesh.vertex_count++ : 0;
+    }
+    for (size_t t = 0; t < all->triangle_count; t++)
+        find_solid(solids, all->labels[all->triangles[3 * t]])->mesh.triangle_count++;
+    for (size_t n = 0; n < solids->count && st == CW_OK; n++) {
+        st = allocate_label(all, &solids->items[n].mesh, err);
+        solids->items[n].mesh.triangle_count = 0;
+    }
+    if (st != CW_OK)
+        return st;
+    for (size_t v = 0; v < all->vertex_count; v++) {
+        cli_part_check *solid = find_solid(solids, all->labels[v]);
+        if (!solid)
+            continue;
+        cw_mesh *out = &solid->mesh;
+        memcpy(out->positions + 3 * (size_t)number[v], all->positions + 3 * v,
+               3 * sizeof(float));
+        if (all->normals)
+            memcpy(out->normals + 3 * (size_t)number[v], all->normals + 3 * v,
+                   3 * sizeof(float));
+    }
+    for (size_t t = 0; t < all->triangle_count; t++) {
+        const uint32_t *v = all->triangles + 3 * t;
+        cw_mesh *out = &find_solid(solids, all->labels[v[0]])->mesh;
+        for (size_t c = 0; c < 3; c++)
+            out->triangles[3 * out->triangle_count + c] = number[v[c]];
+        out->triangle_count++;
+    }
     return CW_OK;
 }
 
@@ -102,12 +137,11 @@ static cw_status split_labels(const cw_mesh *mesh, cli_part_checks *solids, cw_e
         solids->items = calloc(count, sizeof *solids->items);
         st = number && solids->items ? CW_OK : cwi_fail_memory(err);
     }
-    for (size_t n = 0; n < count && count > 1 && st == CW_OK; n++) {
-        cli_part_check *solid = &solids->items[solids->count++];
-        solid->has_label = true;
-        solid->label.value = labels[n];
-        st = copy_label(mesh, labels[n], number, &solid->mesh, err);
-    }
+    for (size_t n = 0; n < count && count > 1 && st == CW_OK; n++)
+        solids->items[solids->count++] =
+            (cli_part_check){.has_label = true, .label = {.value = labels[n]}};
+    if (st == CW_OK && solids->count)
+        st = copy_labels(mesh, solids, number, err);
     solids->of_labels = solids->count > 0;
     free(number);
     free(labels);
@@ -157,38 +191,24 @@ static void name_solid(cli_part_check *solid, size_t number)
         snprintf(solid->name, sizeof solid->name, "label %s", digits);
 }
 
-/* Merges the triangles of all solids. */
+/* Merges all solids. part_of: the number of the solid of each triangle */
 static cw_status merge_solids(const cli_part_checks *solids, cw_mesh *all, uint32_t **part_of,
                               cw_error *err)
 {
-    size_t v = 0, t = 0;
-    for (size_t n = 0; n < solids->count; n++) {
-        v += solids->items[n].mesh.vertex_count;
-        t += solids->items[n].mesh.triangle_count;
-    }
-    if (v > UINT32_MAX)
-        return cwi_fail(err, CW_ERR_LIMIT, "the parts have %zu vertices", v);
-    *all = (cw_mesh){.vertex_count = v, .triangle_count = t};
-    memcpy(all->origin, solids->items[0].mesh.origin, sizeof all->origin);
-    all->positions = cwi_alloc_array(v, 3 * sizeof(float));
-    all->triangles = cwi_alloc_array(t, 3 * sizeof(uint32_t));
-    *part_of = malloc((t + 1) * sizeof **part_of);
-    if (!all->positions || !all->triangles || !*part_of)
+    const cw_mesh **meshes = malloc(solids->count * sizeof *meshes);
+    if (!meshes)
         return cwi_fail_memory(err);
-    v = t = 0;
-    for (size_t n = 0; n < solids->count; n++) {
-        const cw_mesh *m = &solids->items[n].mesh;
-        for (size_t i = 0; i < 3 * m->vertex_count; i++)
-            all->positions[3 * v + i] =
-                m->positions[i] + (float)(m->origin[i % 3] - all->origin[i % 3]);
-        for (size_t i = 0; i < 3 * m->triangle_count; i++)
-            all->triangles[3 * t + i] = m->triangles[i] + (uint32_t)v;
-        for (size_t i = 0; i < m->triangle_count; i++)
-            (*part_of)[t + i] = (uint32_t)n;
-        v += m->vertex_count;
-        t += m->triangle_count;
-    }
-    return CW_OK;
+    for (size_t n = 0; n < solids->count; n++)
+        meshes[n] = &solids->items[n].mesh;
+    cw_status st = cwi_gather_meshes(meshes, NULL, solids->count, false, false, all, err);
+    free(meshes);
+    *part_of = st == CW_OK ? malloc((all->triangle_count + 1) * sizeof **part_of) : NULL;
+    if (st == CW_OK && !*part_of)
+        return cwi_fail_memory(err);
+    for (size_t n = 0, to = 0; n < solids->count && st == CW_OK; n++)
+        for (size_t t = 0; t < solids->items[n].mesh.triangle_count; t++)
+            (*part_of)[to++] = (uint32_t)n;
+    return st;
 }
 
 static bool wants_crossings(const cli_check_args *args)
@@ -449,6 +469,13 @@ static void judge_distances(cli_check_run *s, const cli_part_checks *solids)
         v->advice = "allow more with --tolerance, or smooth and simplify less";
 }
 
+static int compare_counts(const void *a, const void *b)
+{
+    const uint32_t x = ((const cw_label_count *)a)->label,
+                   y = ((const cw_label_count *)b)->label;
+    return x < y ? -1 : x > y;
+}
+
 /* Compares each solid with the label of its number. */
 static cw_status compare_with_source(cli_check_run *s, cli_part_checks *solids, cw_error *err)
 {
@@ -461,8 +488,11 @@ static cw_status compare_with_source(cli_check_run *s, cli_part_checks *solids, 
     for (size_t n = 0; n < solids->count && st == CW_OK; n++) {
         cli_part_check *solid = &solids->items[n];
         const uint32_t value = cw_label_ids_find(&s->volume.ids, &solid->label);
-        for (size_t k = 0; k < count && !solid->voxels; k++)
-            solid->voxels = counts[k].label == value ? counts[k].voxels : 0;
+        const cw_label_count key = {.label = value},
+                             *found_count = count ? bsearch(&key, counts, count, sizeof key,
+                                                            compare_counts)
+                                                  : NULL;
+        solid->voxels = found_count ? found_count->voxels : 0;
         solid->voxel_mm3 = voxel * (double)solid->voxels;
         found += solid->voxels > 0;
         strange += solid->voxels == 0;

@@ -6,6 +6,7 @@
 #include "cli/framework/quantity.h"
 #include "core/base/memory.h"
 #include "core/base/status.h"
+#include "core/volume/label_ids.h"
 
 #include <ctype.h>
 #include <fnmatch.h>
@@ -53,11 +54,6 @@ static bool read_range(const char *item, cw_label *first, cw_label *last)
            (item[length] == '-' && cw_label_parse(item + length + 1, last));
 }
 
-static uint64_t number_of(const cw_label *label)
-{
-    return label->id ? label->id : label->value;
-}
-
 /* The labels that are known: those with names, and the numbers of those with voxels. */
 typedef struct known_labels {
     const cw_label_table *table;
@@ -69,12 +65,12 @@ static cw_status add_number(const char *option, cli_label_choice *choice, const 
                             const known_labels *known, cw_error *err)
 {
     cli_chosen_label chosen = {.value = cw_label_ids_find(known->ids, label),
-                               .id = number_of(label),
+                               .id = cwi_label_size(label),
                                .is_negative = label->is_negative,
                                .of_all_layers = true};
     const cw_label_table *t = known->table;
     for (size_t n = 0; n < t->count && chosen.value == UINT32_MAX; n++) /* one without voxels */
-        if (number_of(&t->labels[n]) == chosen.id &&
+        if (cwi_label_size(&t->labels[n]) == chosen.id &&
             t->labels[n].is_negative == chosen.is_negative)
             chosen.value = t->labels[n].value;
     return add_chosen(option, choice, chosen, err);
@@ -83,7 +79,7 @@ static cw_status add_number(const char *option, cli_label_choice *choice, const 
 static cw_status add_range(const char *option, cli_label_choice *choice, const char *item,
                            const cw_label ends[2], const known_labels *known, cw_error *err)
 {
-    const uint64_t first = number_of(&ends[0]), last = number_of(&ends[1]);
+    const uint64_t first = cwi_label_size(&ends[0]), last = cwi_label_size(&ends[1]);
     if (first == last && ends[0].is_negative == ends[1].is_negative)
         return add_number(option, choice, &ends[0], known, err);
     if (ends[0].is_negative || ends[1].is_negative || first > last)
@@ -143,7 +139,7 @@ static cw_status add_names(const char *option, cli_label_choice *choice, const c
         st = add_chosen(option, choice,
                         (cli_chosen_label){.value = label->value,
                                            .layer = label->layer,
-                                           .id = number_of(label),
+                                           .id = cwi_label_size(label),
                                            .is_negative = label->is_negative},
                         err);
     }

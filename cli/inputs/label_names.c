@@ -6,6 +6,7 @@
 #include "cli/framework/field_names.h"
 #include "core/base/memory.h"
 #include "core/base/status.h"
+#include "core/volume/label_table.h"
 
 #include <cubewright/formats.h>
 
@@ -84,8 +85,7 @@ cw_label cli_complete_label(const cw_label_table *table, uint32_t layer, uint32_
         snprintf(name, CLI_LABEL_NAME, "label_%s",
                  cw_label_number(&label, (char[CW_LABEL_NUMBER]){0}));
     label.name = name;
-    if (!label.has_color)
-        cw_label_color(value, label.color);
+    cwi_label_color(&label, label.color);
     label.has_color = true;
     return label;
 }

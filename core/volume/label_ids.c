@@ -11,58 +11,21 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { FIRST_SIZE = 64, PIECE = 1024 };
-
 /* --- places ------------------------------------------------------------------------------ */
 
-/* Returns the entry of a number, or the free one for it. */
-static size_t find_entry(const cwi_id_places *t, int64_t id)
-{
-    uint64_t hash = (uint64_t)id * 0x9e3779b97f4a7c15u;
-    hash ^= hash >> 32;
-    size_t n = (size_t)hash & (t->size - 1);
-    while (t->entries[n].place != 0 && t->entries[n].id != id)
-        n = (n + 1) & (t->size - 1);
-    return n;
-}
-
-static bool grow(cwi_id_places *t)
-{
-    cwi_id_places larger = {.size = t->size ? 2 * t->size : FIRST_SIZE, .used = t->used};
-    larger.entries = cwi_alloc_zeroed(larger.size, sizeof *larger.entries);
-    if (!larger.entries)
-        return false;
-    for (size_t n = 0; n < t->size; n++)
-        if (t->entries[n].place != 0)
-            larger.entries[find_entry(&larger, t->entries[n].id)] = t->entries[n];
-    cwi_free(t->entries);
-    *t = larger;
-    return true;
-}
-
-/* Adds a number at a place; one that is there keeps its own. */
-static cw_status put_place(cwi_id_places *t, int64_t id, uint32_t place, cw_error *err)
+/* Adds a number other than 0 at a place; one that is there keeps its own. */
+static cw_status put_place(cwi_key_counts *t, int64_t id, uint32_t place, cw_error *err)
 {
     if (t->used == UINT32_MAX - 2)
         return cwi_fail(err, CW_ERR_LIMIT, "it has more than %u labels", UINT32_MAX - 2);
-    if (2 * (t->used + 1) > t->size && !grow(t))
+    cwi_key_count *entry = cwi_key_counts_need(t, (uint64_t)id);
+    if (!entry)
         return cwi_fail_memory(err);
-    const size_t n = find_entry(t, id);
-    if (t->entries[n].place == 0) {
-        t->entries[n].id = id;
-        t->entries[n].place = place;
-        t->used++;
-    }
+    entry->count = entry->count ? entry->count : place;
     return CW_OK;
 }
 
-void cwi_id_places_free(cwi_id_places *places)
-{
-    cwi_free(places->entries);
-    *places = (cwi_id_places){0};
-}
-
-cw_status cwi_id_places_fill(cwi_id_places *places, const cw_label_ids *ids, cw_error *err)
+cw_status cwi_id_places_fill(cwi_key_counts *places, const cw_label_ids *ids, cw_error *err)
 {
     cw_status st = CW_OK;
     for (size_t n = 1; n < ids->count && st == CW_OK; n++)
@@ -70,7 +33,7 @@ cw_status cwi_id_places_fill(cwi_id_places *places, const cw_label_ids *ids, cw_
     return st;
 }
 
-size_t cwi_id_replace(const cwi_id_places *places, const int64_t *ids, size_t count,
+size_t cwi_id_replace(const cwi_key_counts *places, const int64_t *ids, size_t count,
                       uint32_t *to)
 {
     int64_t last = 0;
@@ -83,9 +46,11 @@ size_t cwi_id_replace(const cwi_id_places *places, const int64_t *ids, size_t co
     for (size_t n = 0; n < count; n++) {
         if (ids[n] != last) {
             last = ids[n];
-            place = last ? places->entries[find_entry(places, last)].place : 0;
-            if (last && !place)
+            const cwi_key_count *entry =
+                last ? cwi_key_counts_find(places, (uint64_t)last) : NULL;
+            if (last && !entry)
                 return n;
+            place = entry ? (uint32_t)entry->count : 0;
         }
         to[n] = place;
     }
@@ -189,12 +154,12 @@ static int compare_unsigned(const void *a, const void *b)
 
 cw_status cwi_id_list(cwi_id_census *census, cw_label_ids *ids, cw_error *err)
 {
-    cwi_id_places *t = &census->places;
+    cwi_key_counts *t = &census->places;
     ids->rounded = census->rounded;
     ids->largest_rounding = census->largest_rounding;
     ids->is_unsigned = census->is_unsigned;
     if (!census->has_outside) {
-        cwi_id_places_free(t);
+        cwi_key_counts_free(t);
         return CW_OK;
     }
     int64_t *all = cwi_alloc_array(t->used + 1, sizeof *all);
@@ -203,14 +168,14 @@ cw_status cwi_id_list(cwi_id_census *census, cw_label_ids *ids, cw_error *err)
     size_t count = 0;
     all[count++] = 0;
     for (size_t n = 0; n < t->size; n++)
-        if (t->entries[n].place)
-            all[count++] = t->entries[n].id;
+        if (t->entries[n].key)
+            all[count++] = (int64_t)t->entries[n].key;
     qsort(all + 1, count - 1, sizeof *all,
           census->is_unsigned ? compare_unsigned : compare_signed);
     ids->ids = all;
     ids->count = count;
     for (size_t n = 1; n < count; n++)
-        t->entries[find_entry(t, all[n])].place = (uint32_t)n;
+        cwi_key_counts_need(t, (uint64_t)all[n])->count = n;
     return CW_OK;
 }
 
@@ -236,7 +201,7 @@ cw_status cw_labels_renumber(const int64_t *values, bool is_unsigned, size_t cou
         st = cwi_id_list(&census, ids, err);
     if (st == CW_OK)
         cwi_id_replace(&census.places, values, count, numbers);
-    cwi_id_places_free(&census.places);
+    cwi_key_counts_free(&census.places);
     return st;
 }
 
@@ -282,7 +247,7 @@ bool cw_label_parse(const char *text, cw_label *label)
 /* Returns the number of a label as bits of the list; false: it cannot be in it. */
 static bool find_bits(const cw_label_ids *ids, const cw_label *label, int64_t *bits)
 {
-    const uint64_t size = label->id ? label->id : label->value;
+    const uint64_t size = cwi_label_size(label);
     *bits = label->is_negative ? (int64_t)(0 - size) : (int64_t)size;
     return ids->is_unsigned ? !label->is_negative
                             : label->is_negative || size <= (uint64_t)INT64_MAX;
@@ -335,15 +300,15 @@ static cw_status add_rest(cw_label_table *table, const cw_label_ids *ids, const 
     return st;
 }
 
-static cw_status renumber(const cw_label_table *from, const cw_label_ids *ids, bool *known,
-                          cw_label_table *to, cw_error *err)
+static cw_status renumber_labels(const cw_label_table *from, const cw_label_ids *ids,
+                                 bool *known, cw_label_table *to, cw_error *err)
 {
     size_t beyond = ids->count;
     cw_status st = CW_OK;
     for (size_t n = 0; n < from->count && st == CW_OK; n++) {
         cw_label label = from->labels[n];
         const uint32_t place = cw_label_ids_find(ids, &label);
-        label.id = label.id ? label.id : label.value;
+        label.id = cwi_label_size(&label);
         if (place == UINT32_MAX && beyond == UINT32_MAX - 1)
             continue;
         label.value = place != UINT32_MAX ? place : (uint32_t)beyond++;
@@ -363,7 +328,7 @@ cw_status cw_label_table_renumber(cw_label_table *table, const cw_label_ids *ids
     bool *known = cwi_alloc_zeroed(ids->count, sizeof *known);
     if (!known)
         return cwi_fail_memory(err);
-    cw_status st = renumber(table, ids, known, &to, err);
+    cw_status st = renumber_labels(table, ids, known, &to, err);
     if (st == CW_OK)
         st = cwi_label_table_sort(&to, false, err);
     cwi_free(known);

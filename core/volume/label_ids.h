@@ -5,6 +5,8 @@
 #include <cubewright/label_table.h>
 #include <cubewright/volume.h>
 
+#include "core/volume/key_counts.h"
+
 #ifdef __cplusplus
 extern "C" {
 #endif
@@ -12,22 +14,19 @@ extern "C" {
 /* Types of voxels in files that no call takes but those that replace them. */
 enum { CWI_I64 = CW_TYPE_COUNT + 8, CWI_U64 };
 
-/* A hash table with open addressing, from numbers other than 0 to places above 0. */
-typedef struct cwi_id_places {
-    size_t size, used; /* size: a power of two, or 0 */
-    struct {
-        int64_t id;
-        uint32_t place; /* 0: free */
-    } * entries;
-} cwi_id_places;
+/* Returns the size of the number that a label has in its file, without its sign. */
+static inline uint64_t cwi_label_size(const cw_label *label)
+{
+    return label->id ? label->id : label->value;
+}
 
 /* A list that is being gathered. A zeroed one is empty. */
 typedef struct cwi_id_census {
-    cwi_id_places places;
-    bool is_unsigned; /* set before the first number is added */
-    bool rounds;      /* values that are not whole are rounded; set before, too */
-    bool has_outside; /* a number is below 0, or beyond 32 bits */
-    size_t rounded;   /* voxels */
+    cwi_key_counts places; /* of numbers as keys; counts are places in the list, from 1 on */
+    bool is_unsigned;      /* set before the first number is added */
+    bool rounds;           /* values that are not whole are rounded; set before, too */
+    bool has_outside;      /* a number is below 0, or beyond 32 bits */
+    size_t rounded;        /* voxels */
     double largest_rounding;
 } cwi_id_census;
 
@@ -53,15 +52,13 @@ CW_NODISCARD cw_status cwi_id_add(cwi_id_census *census, const int64_t *ids, siz
 CW_NODISCARD cw_status cwi_id_list(cwi_id_census *census, cw_label_ids *ids, cw_error *err);
 
 /* Makes the table of places of a list. Returns CW_ERR_NO_MEMORY */
-CW_NODISCARD cw_status cwi_id_places_fill(cwi_id_places *places, const cw_label_ids *ids,
+CW_NODISCARD cw_status cwi_id_places_fill(cwi_key_counts *places, const cw_label_ids *ids,
                                           cw_error *err);
 
 /* Replaces numbers by places; without places they are kept. Returns the number of those replaced: less
  * than `count` where the next is not in the list. */
-size_t cwi_id_replace(const cwi_id_places *places, const int64_t *ids, size_t count,
+size_t cwi_id_replace(const cwi_key_counts *places, const int64_t *ids, size_t count,
                       uint32_t *to);
-
-void cwi_id_places_free(cwi_id_places *places);
 
 #ifdef __cplusplus
 }

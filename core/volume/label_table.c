@@ -258,3 +258,11 @@ void cw_label_color(uint32_t value, uint8_t color[4])
     }
     color[3] = 255;
 }
+
+void cwi_label_color(const cw_label *label, uint8_t color[4])
+{
+    if (label->has_color)
+        memmove(color, label->color, sizeof label->color);
+    else
+        cw_label_color(label->value, color);
+}

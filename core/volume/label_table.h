@@ -4,6 +4,9 @@
 
 #include <cubewright/label_table.h>
 
+/* Finds the colour of a label: its own, or cw_label_color() of its value. color may be that of the label */
+void cwi_label_color(const cw_label *label, uint8_t color[4]);
+
 /* Appends a copy of a label, as cw_label_table_add() does, in constant time. The table must be
  * sorted before it is used otherwise, except that it can be freed. CW_ERR_NO_MEMORY */
 CW_NODISCARD cw_status cwi_label_table_append(cw_label_table *table, const cw_label *label,

@@ -294,7 +294,7 @@ static void list_contact(cleaner *c, uint32_t a, uint32_t b, size_t faces)
             const size_t room = c->contact_room ? 2 * c->contact_room : 1024;
             contact *grown = cwi_realloc_array(c->contacts, room, sizeof *grown);
             if (!grown) {
-                c->contact_room = NONE; /* memory is out; clean() returns it */
+                c->contact_room = NONE; /* memory is out; clean_map() returns it */
                 return;
             }
             c->contacts = grown;
@@ -329,7 +329,7 @@ static void sum_contacts(cleaner *c)
 }
 
 /* Chooses the label that has the most faces with a component, among those of components that stay. Of
- * equal ones the lowest. Returns NONE if there is none. */
+ * equal ones the lowest. Returns NONE where all of its neighbours go, too. */
 static uint32_t choose_neighbour(const cleaner *c, size_t first, size_t end)
 {
     uint32_t best = NONE;
@@ -460,7 +460,7 @@ static void free_cleaner(cleaner *c)
     cwi_free(c->contacts);
 }
 
-static cw_status clean(cleaner *c, cw_volume *cleaned, cw_error *err)
+static cw_status clean_map(cleaner *c, cw_volume *cleaned, cw_error *err)
 {
     c->rows = cwi_alloc_array(c->v.dim[1] * c->v.dim[2] + 1, sizeof *c->rows);
     cw_status st = c->rows ? list_runs(c, err) : cwi_fail_memory(err);
@@ -499,7 +499,7 @@ cw_status cw_labels_clean(const cw_volume *volume, const cw_label_clean_desc *de
     if (st == CW_OK && (c.v.dim[0] >= NONE || c.v.dim[1] >= NONE || c.v.dim[2] >= NONE))
         st = cwi_fail(err, CW_ERR_LIMIT, "it has 2^32 - 1 voxels along an axis");
     if (st == CW_OK)
-        st = clean(&c, cleaned, err);
+        st = clean_map(&c, cleaned, err);
     free_cleaner(&c);
     if (st == CW_OK && changes && count) {
         *changes = c.changes;

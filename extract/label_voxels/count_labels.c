@@ -1,7 +1,7 @@
 /* Counts the voxels of each label. */
 #include <cubewright/labels.h>
 
-#include "extract/labels/key_counts.h"
+#include "core/volume/key_counts.h"
 #include "extract/labels/label_layers.h"
 
 #include "core/base/memory.h"

@@ -2,7 +2,7 @@
 #ifndef EXTRACT_LABELS_LABEL_CHUNKS_H
 #define EXTRACT_LABELS_LABEL_CHUNKS_H
 
-#include "extract/labels/key_counts.h"
+#include "core/volume/key_counts.h"
 #include "extract/labels/label_cubes.h"
 #include "extract/labels/label_layers.h"
 #include "extract/labels/label_net.h"

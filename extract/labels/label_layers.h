@@ -2,7 +2,7 @@
 #ifndef EXTRACT_LABELS_LABEL_LAYERS_H
 #define EXTRACT_LABELS_LABEL_LAYERS_H
 
-#include "extract/labels/key_counts.h"
+#include "core/volume/key_counts.h"
 
 #include <cubewright/labels.h>
 

@@ -2,7 +2,7 @@
 #include "extract/labels/find_label.h"
 
 #include "core/mesh/mesh_triangle.h"
-#include "extract/labels/key_counts.h"
+#include "core/volume/key_counts.h"
 
 #include "core/base/memory.h"
 #include "core/base/status.h"

@@ -5,7 +5,7 @@
  * then, in any order, and equal shares are found to be equal. */
 #include <cubewright/labels.h>
 
-#include "extract/labels/key_counts.h"
+#include "core/volume/key_counts.h"
 #include "extract/labels/label_layers.h"
 
 #include "core/base/memory.h"

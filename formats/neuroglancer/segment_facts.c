@@ -6,6 +6,7 @@
 #include "core/base/text.h"
 #include "core/geometry/triangle.h"
 #include "core/geometry/vec3.h"
+#include "core/volume/label_ids.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -27,11 +28,6 @@ static int compare_ids(const void *a, const void *b)
 {
     const uint64_t x = *(const uint64_t *)a, y = *(const uint64_t *)b;
     return x < y ? -1 : x > y;
-}
-
-static uint64_t number_of(const cw_label *label)
-{
-    return label->id ? label->id : label->value;
 }
 
 static cw_status check_ids(const cwi_segments *s, cw_error *err)
@@ -70,7 +66,7 @@ cw_status cwi_segments_list(const cwi_parts *parts, cwi_segments *segments, cw_e
         if (part->level == 0) {
             cwi_segment *s = &segments->items[segments->count++];
             s->levels = part;
-            s->id = part->label ? number_of(part->label) : segments->count;
+            s->id = part->label ? cwi_label_size(part->label) : segments->count;
             negative = part->label && part->label->is_negative ? part->label : negative;
         }
         cwi_segment *s = &segments->items[segments->count - 1];

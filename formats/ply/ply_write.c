@@ -1,6 +1,7 @@
 /* Writes PLY, binary little-endian or text: everything of a mesh except its affine. */
 
 #include "core/base/status.h"
+#include "core/volume/label_table.h"
 #include "formats/ply/ply_format.h"
 
 #define COLOR_PROPERTIES                                                                       \
@@ -74,10 +75,7 @@ static cw_status write_label(const cw_label *label, cwi_outfile *file, cw_error 
 {
     uint8_t c[4];
     char number[CW_LABEL_NUMBER];
-    if (label->has_color)
-        memcpy(c, label->color, sizeof c);
-    else
-        cw_label_color(label->value, c);
+    cwi_label_color(label, c);
     cw_status st =
         cwi_outfile_printf(file, err, "comment label %u #%02X%02X%02X%02X %s\n", label->value,
                            c[0], c[1], c[2], c[3], label->name ? label->name : "");

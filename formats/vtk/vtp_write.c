@@ -1,4 +1,6 @@
 /* Writes VTK's XML PolyData: arrays as appended raw data, each in blocks compressed by zlib. */
+#include "core/volume/label_ids.h"
+#include "core/volume/label_table.h"
 #include "formats/bytes/block_writer.h"
 #include "formats/mesh/place_parts.h"
 #include "formats/vtk/vtk_formats.h"
@@ -39,7 +41,7 @@ static unsigned char *encode_label(const cwi_part *part, size_t v, unsigned char
 
 static unsigned char *put_number(unsigned char *to, const cw_label *label)
 {
-    const uint64_t size = label->id ? label->id : label->value;
+    const uint64_t size = cwi_label_size(label);
     return cwi_put_u64(to, label->is_negative ? 0 - size : size);
 }
 
@@ -154,7 +156,7 @@ typedef struct vtp {
     uint64_t offset_at[ARRAY_COUNT]; /* places in the file of the arrays' offsets */
 } vtp;
 
-static width widen(width labels, const cw_label *label)
+static width widen_labels(width labels, const cw_label *label)
 {
     return !label || !label->id              ? labels
            : label->id > (uint64_t)INT64_MAX ? UNSIGNED
@@ -168,9 +170,10 @@ static width width_of_labels(const cwi_parts *parts)
     const cw_label_table *sides = parts->items[0].side_labels;
     width labels = VALUES;
     for (size_t n = 0; n < parts->count; n++)
-        labels = parts->items[n].mesh.labels ? labels : widen(labels, parts->items[n].label);
+        labels =
+            parts->items[n].mesh.labels ? labels : widen_labels(labels, parts->items[n].label);
     for (size_t n = 0; sides && n < sides->count; n++)
-        labels = widen(labels, &sides->labels[n]);
+        labels = widen_labels(labels, &sides->labels[n]);
     return labels;
 }
 
@@ -249,10 +252,7 @@ static cw_status write_codes(cwi_outfile *file, const char *text, cw_error *err)
 static cw_status write_color(cwi_outfile *file, const cw_label *label, cw_error *err)
 {
     uint8_t c[4];
-    if (label->has_color)
-        memcpy(c, label->color, sizeof c);
-    else
-        cw_label_color(label->value, c);
+    cwi_label_color(label, c);
     return cwi_outfile_printf(file, err, "%d %d %d %d\n", c[0], c[1], c[2], c[3]);
 }
 

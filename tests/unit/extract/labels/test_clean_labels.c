@@ -14,7 +14,7 @@ static size_t at(int x, int y, int z)
 }
 
 /* Floods the component of a voxel; returns its voxels. */
-static size_t flood(const uint8_t *map, size_t start, int *component, int number)
+static size_t flood_component(const uint8_t *map, size_t start, int *component, int number)
 {
     size_t stack[VOXELS], depth = 0, count = 0;
     stack[depth++] = start;
@@ -46,7 +46,7 @@ static int find_components(const uint8_t *map, int *component, size_t *sizes)
         component[n] = -1;
     for (size_t n = 0; n < VOXELS; n++)
         if (component[n] < 0) {
-            sizes[count] = flood(map, n, component, count);
+            sizes[count] = flood_component(map, n, component, count);
             count++;
         }
     return count;

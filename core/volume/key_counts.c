@@ -1,5 +1,5 @@
 /* A hash table with open addressing. */
-#include "extract/labels/key_counts.h"
+#include "core/volume/key_counts.h"
 
 #include "core/base/memory.h"
 
@@ -39,9 +39,15 @@ cwi_key_count *cwi_key_counts_need(cwi_key_counts *t, uint64_t key)
     return entry;
 }
 
+const cwi_key_count *cwi_key_counts_find(const cwi_key_counts *t, uint64_t key)
+{
+    const cwi_key_count *entry = t->size > 0 ? &t->entries[find_place(t, key)] : NULL;
+    return entry && entry->key == key ? entry : NULL;
+}
+
 bool cwi_key_counts_has(const cwi_key_counts *t, uint64_t key)
 {
-    return t->size > 0 && t->entries[find_place(t, key)].key == key;
+    return cwi_key_counts_find(t, key) != NULL;
 }
 
 void cwi_key_counts_free(cwi_key_counts *t)
