@@ -200,8 +200,8 @@ typedef struct cw_label_resample_desc {
  *          evenly spaced, and voxels weigh by their index
  * desc     borrowed
  * out      filled with CW_U32 on success, emptied on failure; free it with cw_volume_free()
- * Returns  CW_ERR_ARGUMENT: a value is no label, naming the voxel; spacing_mm is not above 0, or no such kernel;
- *          CW_ERR_UNSUPPORTED: sparse and irregular grids; CW_ERR_LIMIT: max_bytes is too low;
+ * Returns  CW_ERR_ARGUMENT: a value is no label, naming the voxel; spacing_mm is not above 0; there
+ *          is no such kernel; CW_ERR_UNSUPPORTED: sparse and irregular grids; CW_ERR_LIMIT: max_bytes is too low;
  *          CW_ERR_NO_MEMORY; CW_ERR_CANCELLED
  * Cost     one pass over the voxels, and up to 125 weights a voxel where labels meet; memory: a thread
  *          holds some rows of some slices
