@@ -199,6 +199,26 @@ static cw_status ensure_capacity(cwi_label_job *j, const cw_labels_desc *desc, c
     return CW_OK;
 }
 
+/* Fills in the prediction. Bytes of a vertex and a triangle are those of all arrays that are there at
+ * one time, with directions in several patches for a third of the vertices. */
+static void predict_job(const cwi_label_job *j, const cw_labels_desc *desc)
+{
+    enum { PLACE = 12, CORNERS = 12, SMOOTHED_VERTEX = 88, SMOOTHED_TRIANGLE = 29 };
+    const cw_label_surfaces *out = j->out;
+    cw_label_prediction *p = j->prediction;
+    *p = (cw_label_prediction){.labels = out->label_count,
+                               .patches = out->patch_count,
+                               .vertices = out->mesh.vertex_count,
+                               .triangles = out->mesh.triangle_count};
+    for (size_t n = 0; n < out->patch_count; n++) {
+        const cw_label_patch *patch = &out->patches[n];
+        p->own_triangles += (patch->labels[1] == out->background ? 1 : 2) * patch->count;
+    }
+    p->bytes = desc->no_smoothing
+                   ? PLACE * p->vertices + CORNERS * p->triangles
+                   : SMOOTHED_VERTEX * p->vertices + SMOOTHED_TRIANGLE * p->triangles;
+}
+
 /* Goes through chunks whose slices are in memory. */
 static cw_status run_chunks(cwi_label_job *j, size_t first, size_t count,
                             const cw_labels_desc *desc, const cw_progress *progress,
@@ -293,6 +313,19 @@ static cw_status smooth_all(cwi_label_job *j, const cw_labels_desc *desc,
     return st;
 }
 
+/* Makes the surfaces that the first pass counted. */
+static cw_status make_surfaces(cwi_label_job *j, size_t chunks, const cw_labels_desc *desc,
+                               cwi_label_smoother *smooth, cw_error *err)
+{
+    cw_status st = ensure_capacity(j, desc, err);
+    j->is_writing = true;
+    if (st == CW_OK)
+        st = run_pass(j, chunks, desc, err);
+    if (st == CW_OK)
+        st = j->originals ? smooth_all(j, desc, smooth, err) : place_all(j, desc, err);
+    return st;
+}
+
 static cw_status run_job(cwi_label_job *j, const cw_labels_desc *desc,
                          cwi_label_smoother *smooth, cw_error *err)
 {
@@ -308,13 +341,10 @@ static cw_status run_job(cwi_label_job *j, const cw_labels_desc *desc,
         st = list_patches(j, chunks, err);
     if (st == CW_OK)
         st = number_vertices(j, chunks, err);
-    if (st == CW_OK)
-        st = ensure_capacity(j, desc, err);
-    j->is_writing = true;
-    if (st == CW_OK)
-        st = run_pass(j, chunks, desc, err);
-    if (st == CW_OK)
-        st = j->originals ? smooth_all(j, desc, smooth, err) : place_all(j, desc, err);
+    if (st == CW_OK && j->prediction)
+        predict_job(j, desc);
+    else if (st == CW_OK)
+        st = make_surfaces(j, chunks, desc, smooth, err);
     cwi_label_net_free(&j->net);
     cwi_free(j->originals);
     cwi_free(j->places);
@@ -393,10 +423,12 @@ static double resolve_max_move(const cw_volume *v, double max_move)
     return fmax(0, (max_move > 0 ? max_move : 0.5) - margin);
 }
 
-/* Extracts the labels of a resolved volume: of its voxels or, if there is a window, of slices. */
+/* Extracts the labels of a resolved volume: of its voxels or, if there is a window, of slices.
+ * prediction: NULL, or filled in; then surfaces are not made */
 static cw_status extract_resolved(const cw_volume *v, cwi_label_window *window,
                                   const cw_labels_desc *desc, cwi_label_smoother *smooth,
-                                  cw_label_surfaces *surfaces, cw_error *err)
+                                  cw_label_prediction *prediction, cw_label_surfaces *surfaces,
+                                  cw_error *err)
 {
     cw_status st = CW_OK;
     if (!(desc->max_move >= 0 && desc->max_move <= 0.5))
@@ -411,6 +443,7 @@ static cw_status extract_resolved(const cw_volume *v, cwi_label_window *window,
     cwi_label_job *j = cwi_alloc_zeroed(1, sizeof *j);
     if (requested && j) {
         j->out = surfaces;
+        j->prediction = prediction;
         surfaces->background = desc->background;
         j->window = window;
         prepare_job(j, v, desc, requested);
@@ -419,14 +452,15 @@ static cw_status extract_resolved(const cw_volume *v, cwi_label_window *window,
         st = cwi_fail_memory(err);
     cwi_free(j);
     cwi_free(requested);
-    if (st != CW_OK)
+    if (st != CW_OK || prediction)
         cw_label_surfaces_free(surfaces);
     return st;
 }
 
-cw_status cwi_extract_labels_with(const cw_volume *volume, const cw_labels_desc *desc,
-                                  cwi_label_smoother *smooth, cw_label_surfaces *surfaces,
-                                  cw_error *err)
+/* Extracts or predicts the labels of a volume. */
+static cw_status extract_volume(const cw_volume *volume, const cw_labels_desc *desc,
+                                cwi_label_smoother *smooth, cw_label_prediction *prediction,
+                                cw_label_surfaces *surfaces, cw_error *err)
 {
     const cw_labels_desc none = {0};
     cw_volume v;
@@ -434,23 +468,39 @@ cw_status cwi_extract_labels_with(const cw_volume *volume, const cw_labels_desc 
     cw_status st = cw_volume_resolve(volume, &v, err);
     if (st == CW_OK)
         st = cwi_volume_expect_dense(&v, "extracting labels", err);
-    return st == CW_OK ? extract_resolved(&v, NULL, desc ? desc : &none, smooth, surfaces, err)
+    return st == CW_OK ? extract_resolved(&v, NULL, desc ? desc : &none, smooth, prediction,
+                                          surfaces, err)
                        : st;
 }
 
-cw_status cwi_extract_labels_windowed(const cw_slice_source *source, size_t chunks,
-                                      const cw_labels_desc *desc, cw_label_surfaces *surfaces,
-                                      cw_error *err)
+/* Extracts or predicts the labels of a source. */
+static cw_status extract_source(const cw_slice_source *source, size_t chunks,
+                                const cw_labels_desc *desc, cw_label_prediction *prediction,
+                                cw_label_surfaces *surfaces, cw_error *err)
 {
     const cw_labels_desc none = {0};
     cwi_label_window w;
     memset(surfaces, 0, sizeof *surfaces);
     cw_status st = cwi_label_window_open(&w, source, chunks, err);
     if (st == CW_OK)
-        st = extract_resolved(&w.whole, &w, desc ? desc : &none, cwi_labels_smooth, surfaces,
-                              err);
+        st = extract_resolved(&w.whole, &w, desc ? desc : &none, cwi_labels_smooth, prediction,
+                              surfaces, err);
     cwi_label_window_close(&w);
     return st;
+}
+
+cw_status cwi_extract_labels_with(const cw_volume *volume, const cw_labels_desc *desc,
+                                  cwi_label_smoother *smooth, cw_label_surfaces *surfaces,
+                                  cw_error *err)
+{
+    return extract_volume(volume, desc, smooth, NULL, surfaces, err);
+}
+
+cw_status cwi_extract_labels_windowed(const cw_slice_source *source, size_t chunks,
+                                      const cw_labels_desc *desc, cw_label_surfaces *surfaces,
+                                      cw_error *err)
+{
+    return extract_source(source, chunks, desc, NULL, surfaces, err);
 }
 
 cw_status cw_extract_labels_stream(const cw_slice_source *source, const cw_labels_desc *desc,
@@ -467,4 +517,23 @@ cw_status cw_extract_labels(const cw_volume *volume, const cw_labels_desc *desc,
     CWI_REQUIRE(err, volume, surfaces);
     CWI_REQUIRE_VERSION(err, desc, 0);
     return cwi_extract_labels_with(volume, desc, cwi_labels_smooth, surfaces, err);
+}
+
+cw_status cw_extract_labels_predict(const cw_volume *volume, const cw_labels_desc *desc,
+                                    cw_label_prediction *prediction, cw_error *err)
+{
+    cw_label_surfaces none;
+    CWI_REQUIRE(err, volume, prediction);
+    CWI_REQUIRE_VERSION(err, desc, 0);
+    return extract_volume(volume, desc, NULL, prediction, &none, err);
+}
+
+cw_status cw_extract_labels_stream_predict(const cw_slice_source *source,
+                                           const cw_labels_desc *desc,
+                                           cw_label_prediction *prediction, cw_error *err)
+{
+    cw_label_surfaces none;
+    CWI_REQUIRE(err, source, prediction);
+    CWI_REQUIRE_VERSION(err, desc, 0);
+    return extract_source(source, 0, desc, prediction, &none, err);
 }

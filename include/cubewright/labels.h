@@ -104,6 +104,40 @@ CW_NODISCARD CW_API cw_status cw_extract_labels_stream(const cw_slice_source *so
                                                        cw_label_surfaces *surfaces,
                                                        cw_error *err);
 
+/* Counts and costs of an extraction of labels. */
+typedef struct cw_label_prediction {
+    size_t labels;    /* that occur, but the background */
+    size_t patches;   /* interfaces of two labels */
+    size_t vertices;  /* of all interfaces */
+    size_t triangles; /* of all interfaces, each once */
+    size_t
+        own_triangles; /* of all labels' own meshes: a triangle between two labels is in both */
+    size_t bytes;      /* of the surfaces and the working memory together, about; without the
+                             voxels */
+} cw_label_prediction;
+
+/* Counts what cw_extract_labels() would make, without making it. Counts are exact, and
+ * desc->max_triangles is ignored.
+ *
+ * prediction  filled on success
+ * Returns     as cw_extract_labels()
+ * Cost        one pass over the voxels */
+CW_NODISCARD CW_API cw_status cw_extract_labels_predict(const cw_volume *volume,
+                                                        const cw_labels_desc *desc,
+                                                        cw_label_prediction *prediction,
+                                                        cw_error *err);
+
+/* Counts what cw_extract_labels_stream() would make, from slices that are read once.
+ *
+ * source      borrowed
+ * prediction  filled on success
+ * Returns     as cw_extract_labels_stream()
+ * Cost        as cw_extract_labels_stream(), without the surfaces */
+CW_NODISCARD CW_API cw_status cw_extract_labels_stream_predict(const cw_slice_source *source,
+                                                               const cw_labels_desc *desc,
+                                                               cw_label_prediction *prediction,
+                                                               cw_error *err);
+
 /* Counts the voxels of all labels but the background.
  *
  * volume      as for cw_extract_labels()

@@ -2768,6 +2768,25 @@ cw_label_surfaces._fields_ = [
 ]
 
 
+class cw_label_prediction(Structure):
+    labels: int
+    patches: int
+    vertices: int
+    triangles: int
+    own_triangles: int
+    bytes: int
+
+
+cw_label_prediction._fields_ = [
+    ("labels", c_size_t),
+    ("patches", c_size_t),
+    ("vertices", c_size_t),
+    ("triangles", c_size_t),
+    ("own_triangles", c_size_t),
+    ("bytes", c_size_t),
+]
+
+
 class cw_label_clean_desc(Structure):
     version: int
     background: int
@@ -4498,6 +4517,8 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "cw_hard_sample": (c_int, [POINTER(cw_hard_desc), POINTER(cw_volume), POINTER(cw_error)]),
     "cw_extract_labels": (c_int, [POINTER(cw_volume), POINTER(cw_labels_desc), POINTER(cw_label_surfaces), POINTER(cw_error)]),
     "cw_extract_labels_stream": (c_int, [POINTER(cw_slice_source), POINTER(cw_labels_desc), POINTER(cw_label_surfaces), POINTER(cw_error)]),
+    "cw_extract_labels_predict": (c_int, [POINTER(cw_volume), POINTER(cw_labels_desc), POINTER(cw_label_prediction), POINTER(cw_error)]),
+    "cw_extract_labels_stream_predict": (c_int, [POINTER(cw_slice_source), POINTER(cw_labels_desc), POINTER(cw_label_prediction), POINTER(cw_error)]),
     "cw_label_counts": (c_int, [POINTER(cw_volume), c_uint32, POINTER(POINTER(cw_label_count)), POINTER(c_size_t), POINTER(cw_error)]),
     "cw_label_counts_free": (None, [POINTER(cw_label_count)]),
     "cw_labels_clean": (c_int, [POINTER(cw_volume), POINTER(cw_label_clean_desc), POINTER(cw_volume), POINTER(POINTER(cw_label_change)), POINTER(c_size_t), POINTER(cw_error)]),

@@ -347,6 +347,26 @@ static void assert_same_surfaces(const cw_label_surfaces *a, const cw_label_surf
     assert_memory_equal(a->labels, b->labels, a->label_count * sizeof *a->labels);
 }
 
+/* Checks a prediction against the surfaces. They are small: patches, and not vertices, may be most of
+ * the memory, so that bytes are only held against the mesh. */
+static void check_prediction(const cw_label_prediction *p, const cw_label_surfaces *s)
+{
+    size_t own = 0;
+    for (size_t n = 0; n < s->label_count; n++) {
+        cw_mesh mesh;
+        cw_error err = {0};
+        assert_ok(cw_label_mesh(s, s->labels[n].label, &mesh, &err), err);
+        own += mesh.triangle_count;
+        cw_mesh_free(&mesh);
+    }
+    assert_int_equal(p->labels, s->label_count);
+    assert_int_equal(p->patches, s->patch_count);
+    assert_int_equal(p->vertices, s->mesh.vertex_count);
+    assert_int_equal(p->triangles, s->mesh.triangle_count);
+    assert_int_equal(p->own_triangles, own);
+    assert_true(p->bytes >= 12 * (s->mesh.vertex_count + s->mesh.triangle_count));
+}
+
 static void slices_give_the_same_surfaces(void **state)
 {
     (void)state;
@@ -367,6 +387,15 @@ static void slices_give_the_same_surfaces(void **state)
             for (size_t n = 0; n < 20 * 13 * heights[h]; n++)
                 to[n] = n > 0 && rand() % 4 ? to[n - 1] : (uint32_t)rand() % 9;
             assert_ok(cw_extract_labels(&v, &desc, &whole, &err), err);
+            cw_label_prediction predicted[2];
+            slices first = {.volume = &v};
+            const cw_slice_source source_once = source_of(&first);
+            assert_ok(cw_extract_labels_predict(&v, &desc, &predicted[0], &err), err);
+            assert_ok(
+                cw_extract_labels_stream_predict(&source_once, &desc, &predicted[1], &err),
+                err);
+            check_prediction(&predicted[0], &whole);
+            check_prediction(&predicted[1], &whole);
             for (size_t chunks = 0; chunks < 4; chunks += test_is_short() ? 3 : 1) {
                 slices s = {.volume = &v};
                 const cw_slice_source source = source_of(&s);
@@ -394,6 +423,9 @@ static void slices_that_fail_are_errors(void **state)
     assert_fails(cwi_extract_labels_windowed(&source, 1, NULL, &got, &err), CW_ERR_ARGUMENT,
                  "voxel 2, 3, 50 is 0.25", err);
     assert_null(got.mesh.triangles);
+    cw_label_prediction predicted;
+    assert_fails(cw_extract_labels_predict(&v, NULL, &predicted, &err), CW_ERR_ARGUMENT,
+                 "voxel 2, 3, 50 is 0.25", err);
     to[(50 * 6 + 3) * 5 + 2] = 2;
     s = (slices){.volume = &v, .fails_at = 30};
     assert_fails(cwi_extract_labels_windowed(&source, 1, NULL, &got, &err), CW_ERR_IO,
