@@ -293,16 +293,20 @@ static cw_status smooth_all(cwi_label_job *j, const cw_labels_desc *desc,
                                      .to_point = index_to_point,
                                      .context = j};
     memcpy(j->originals, mesh->positions, 3 * mesh->vertex_count * sizeof *j->originals);
-    cw_status st = cwi_label_net_finish(&j->net, mesh) ? CW_OK : cwi_fail_memory(err);
+    pressures.moves.places = mesh->positions;
+    cw_status st = cwi_label_net_finish(&j->net, mesh) &&
+                           (!keeps_volumes || cwi_label_pressures_init(&pressures))
+                       ? CW_OK
+                       : cwi_fail_memory(err);
     if (st == CW_OK)
-        st = smooth(&j->net, j->originals, j->places, j->out, desc, dim, err);
-    float *spare = j->places;
-    j->places = pressures.moves.places = mesh->positions;
-    mesh->positions = spare;
+        st = smooth(&j->net, j->originals, j->places, j->out, desc, dim,
+                    keeps_volumes ? &pressures : NULL, err);
+    cwi_free(j->net.neighbours);
+    j->net.neighbours = NULL;
+    mesh->positions = j->places;
+    j->places = pressures.moves.places;
     if (st == CW_OK && keeps_volumes)
-        st = cwi_label_pressures_init(&pressures)
-                 ? cwi_label_pressures_keep_first(&pressures, desc, err)
-                 : cwi_fail_memory(err);
+        st = cwi_label_pressures_keep_first(&pressures, desc, err);
     if (st == CW_OK)
         st = place_all(j, desc, err);
     if (st == CW_OK)

@@ -2,7 +2,7 @@
 #ifndef EXTRACT_LABELS_EXTRACT_LABELS_H
 #define EXTRACT_LABELS_EXTRACT_LABELS_H
 
-#include "extract/labels/label_net.h"
+#include "extract/labels/label_pressures.h"
 
 #include <cubewright/labels.h>
 #include <cubewright/stream.h>
@@ -14,7 +14,8 @@ extern "C" {
 /* Moves vertices, as cwi_labels_smooth(). */
 typedef cw_status cwi_label_smoother(cwi_label_net *net, const float *originals, float *spare,
                                      cw_label_surfaces *surfaces, const cw_labels_desc *desc,
-                                     const size_t dim[3], cw_error *err);
+                                     const size_t dim[3], cwi_label_pressures *pressures,
+                                     cw_error *err);
 
 /* Extracts labels as cw_extract_labels(), but smooths them with the given function. Tests tangle
  * vertices with it. */

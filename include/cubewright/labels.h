@@ -64,7 +64,7 @@ typedef struct cw_label_surfaces {
  * surface nets, with a vertex in the middle of the cube. At the volume's border other cubes are two
  * prisms, with a vertex each.
  *
- * Smoothing moves vertices towards the mean of those in the cubes beside, ten times, and those
+ * Smoothing moves vertices towards the mean of those in the cubes beside, in 12 rounds, and those
  * on curves where three labels meet along the curves, each within max_move of where it was. Then
  * pressures, which move each interface along its normal by the difference of its labels'
  * pressures, preserve the volume of every label's voxels, except for open borders. Where

@@ -18,9 +18,10 @@ static double fraction;
 /* Moves vertices to anywhere in their cubes. */
 static cw_status tangle_vertices(cwi_label_net *net, const float *originals, float *spare,
                                  cw_label_surfaces *surfaces, const cw_labels_desc *desc,
-                                 const size_t dim[3], cw_error *err)
+                                 const size_t dim[3], cwi_label_pressures *pressures,
+                                 cw_error *err)
 {
-    (void)spare, (void)desc, (void)dim, (void)err;
+    (void)spare, (void)desc, (void)dim, (void)pressures, (void)err;
     const size_t count = surfaces->mesh.vertex_count;
     tangled = malloc((3 * count + 1) * sizeof *tangled);
     assert_non_null(tangled);
