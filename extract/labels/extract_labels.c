@@ -26,6 +26,8 @@ enum {
  * their own: near it, so that sheets stay apart and close to where surface nets have them. */
 static const double NEAR_FRACTION = 0.5;
 
+static const cwi_label_smoother averages = {cwi_labels_smooth, NULL};
+
 /* Vertices stay at least this far inside of their cubes, in voxels. */
 #define MARGIN 1e-3
 
@@ -257,11 +259,11 @@ static cw_status place_all(cwi_label_job *j, const cw_labels_desc *desc, cw_erro
 
 /* Smooths all vertices, gives labels their volumes, and puts vertices back where triangles cross. */
 static cw_status smooth_all(cwi_label_job *j, const cw_labels_desc *desc,
-                            cwi_label_smoother *smooth, cw_error *err)
+                            const cwi_label_smoother *smooth, cw_error *err)
 {
     cw_mesh *mesh = &j->out->mesh;
     const size_t *dim = j->layers.volume->dim;
-    const bool keeps_volumes = smooth == cwi_labels_smooth && !desc->leave_open;
+    const bool keeps_volumes = smooth->move == cwi_labels_smooth && !desc->leave_open;
     cwi_label_pressures pressures = {.moves = {.net = &j->net,
                                                .surfaces = j->out,
                                                .originals = j->originals,
@@ -275,7 +277,8 @@ static cw_status smooth_all(cwi_label_job *j, const cw_labels_desc *desc,
     memcpy(j->originals, mesh->positions, 3 * mesh->vertex_count * sizeof *j->originals);
     cw_status st = cwi_label_net_finish(&j->net, mesh) ? CW_OK : cwi_fail_memory(err);
     if (st == CW_OK)
-        st = smooth(&j->net, j->originals, j->places, j->out, desc, dim, err);
+        st = smooth->move(smooth->context, &j->net, j->originals, j->places, j->out, desc, dim,
+                          err);
     float *spare = j->places;
     j->places = pressures.moves.places = mesh->positions;
     mesh->positions = spare;
@@ -294,7 +297,7 @@ static cw_status smooth_all(cwi_label_job *j, const cw_labels_desc *desc,
 }
 
 static cw_status run_job(cwi_label_job *j, const cw_labels_desc *desc,
-                         cwi_label_smoother *smooth, cw_error *err)
+                         const cwi_label_smoother *smooth, cw_error *err)
 {
     const size_t layers = j->layers.count - 1,
                  chunks = (layers + CWI_LABEL_CHUNK - 1) / CWI_LABEL_CHUNK;
@@ -395,7 +398,7 @@ static double resolve_max_move(const cw_volume *v, double max_move)
 
 /* Extracts the labels of a resolved volume: of its voxels or, if there is a window, of slices. */
 static cw_status extract_resolved(const cw_volume *v, cwi_label_window *window,
-                                  const cw_labels_desc *desc, cwi_label_smoother *smooth,
+                                  const cw_labels_desc *desc, const cwi_label_smoother *smooth,
                                   cw_label_surfaces *surfaces, cw_error *err)
 {
     cw_status st = CW_OK;
@@ -425,7 +428,7 @@ static cw_status extract_resolved(const cw_volume *v, cwi_label_window *window,
 }
 
 cw_status cwi_extract_labels_with(const cw_volume *volume, const cw_labels_desc *desc,
-                                  cwi_label_smoother *smooth, cw_label_surfaces *surfaces,
+                                  const cwi_label_smoother *smooth, cw_label_surfaces *surfaces,
                                   cw_error *err)
 {
     const cw_labels_desc none = {0};
@@ -447,8 +450,7 @@ cw_status cwi_extract_labels_windowed(const cw_slice_source *source, size_t chun
     memset(surfaces, 0, sizeof *surfaces);
     cw_status st = cwi_label_window_open(&w, source, chunks, err);
     if (st == CW_OK)
-        st = extract_resolved(&w.whole, &w, desc ? desc : &none, cwi_labels_smooth, surfaces,
-                              err);
+        st = extract_resolved(&w.whole, &w, desc ? desc : &none, &averages, surfaces, err);
     cwi_label_window_close(&w);
     return st;
 }
@@ -466,5 +468,5 @@ cw_status cw_extract_labels(const cw_volume *volume, const cw_labels_desc *desc,
 {
     CWI_REQUIRE(err, volume, surfaces);
     CWI_REQUIRE_VERSION(err, desc, 0);
-    return cwi_extract_labels_with(volume, desc, cwi_labels_smooth, surfaces, err);
+    return cwi_extract_labels_with(volume, desc, &averages, surfaces, err);
 }

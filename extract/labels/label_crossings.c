@@ -54,7 +54,7 @@ static int list_corners(const cwi_label_crossings *c, size_t polygon,
 /* Returns true if a vertex is where it was before smoothing. */
 static bool is_back(const cwi_label_crossings *c, uint32_t vertex)
 {
-    return (c->net->kinds[vertex] & (CWI_NET_FIXED | CWI_NET_BACK)) != 0;
+    return (c->net->kinds[vertex] & CWI_NET_BACK) != 0;
 }
 
 /* Finds the ends of the edge around which a polygon of four cubes lies, along an axis. */

@@ -120,10 +120,11 @@ static cw_status average_all(averager *s, cw_error *err)
     return st;
 }
 
-cw_status cwi_labels_smooth(cwi_label_net *net, const float *originals, float *spare,
-                            cw_label_surfaces *surfaces, const cw_labels_desc *desc,
-                            const size_t dim[3], cw_error *err)
+cw_status cwi_labels_smooth(void *context, cwi_label_net *net, const float *originals,
+                            float *spare, cw_label_surfaces *surfaces,
+                            const cw_labels_desc *desc, const size_t dim[3], cw_error *err)
 {
+    (void)context;
     averager s = {.net = net,
                   .originals = originals,
                   .bound = (float)desc->max_move,

@@ -19,8 +19,9 @@ enum { CWI_SPARE_POSITIONS = 2 };
  * originals  the places before; dim: of the volume; desc->max_move: the bound itself
  * spare      memory for as many places
  * Returns  CW_ERR_CANCELLED */
-CW_NODISCARD cw_status cwi_labels_smooth(cwi_label_net *net, const float *originals,
-                                         float *spare, cw_label_surfaces *surfaces,
+CW_NODISCARD cw_status cwi_labels_smooth(void *context, cwi_label_net *net,
+                                         const float *originals, float *spare,
+                                         cw_label_surfaces *surfaces,
                                          const cw_labels_desc *desc, const size_t dim[3],
                                          cw_error *err);
 
