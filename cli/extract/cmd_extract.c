@@ -236,8 +236,7 @@ static const cli_rule rules[] = {
     CLI_PRINTER_RULES,
     {"range colormap", CLI_NEEDS, "color-by"},
     {"names smooth-labels table shared-faces per-label require-labels round probabilities",
-     CLI_NEEDS,
-     "labels"},
+     CLI_NEEDS, "labels"},
     {"labels", CLI_EXCLUDES,
      "iso inside topology placement snap profile=print max-error pixel-error shading size no-measure fps "
      "steps animate pvd prove-crop pivot component=mag denoise remove-table mask mask-open mask-close"},

@@ -44,8 +44,9 @@ cw_status cli_measure_label_volumes(cli_label_run *r, cw_error *err)
             cli_label_item *item = &r->items[next];
             if (item->layer != &r->layers[l] || item->label.value != s->labels[n].label)
                 continue; /* hidden */
-            item->volume_error =
-                r->args->open || r->args->probabilities ? NAN : volumes[n] / (voxel * (double)item->voxels) - 1;
+            item->volume_error = r->args->open || r->args->probabilities
+                                     ? NAN
+                                     : volumes[n] / (voxel * (double)item->voxels) - 1;
             next++;
         }
         cwi_free(volumes);

@@ -29,7 +29,8 @@ static double find_error_mm(const cli_label_run *r)
 static cw_status expect_labels(const cli_label_run *r, cw_error *err)
 {
     cw_labels l;
-    if (r->args->probabilities || !r->choice.all || r->args->common.force || r->names.table.count || r->volume.streams)
+    if (r->args->probabilities || !r->choice.all || r->args->common.force ||
+        r->names.table.count || r->volume.streams)
         return CW_OK;
     cw_status st = cw_volume_labels(&r->volume.view, &l, err);
     if (st != CW_OK || !l.scattered)
@@ -62,7 +63,7 @@ static cw_status read_map(cli_label_run *r, cw_error *err)
 static cw_status find_names(cli_label_run *r, cw_error *err)
 {
     return r->fields.more_count > 0 && !r->args->names
-               ? cli_name_label_fields(r, err)
+               ? cli_name_label_fields(&r->fields, &r->names.table, err)
                : cli_find_label_names(r->args->names, &r->volume, &r->names, err);
 }
 
@@ -70,7 +71,10 @@ static cw_status read_input(cli_label_run *r, cw_error *err)
 {
     const cli_extract_args *args = r->args;
     cli_report_begin(&r->report);
-    cw_status st = args->probabilities ? cli_read_label_fields(r, err) : read_map(r, err);
+    cw_status st = args->probabilities
+                       ? cli_read_label_fields(args->probabilities, &args->common, &args->input,
+                                               &r->volume, &r->fields, err)
+                       : read_map(r, err);
     if (st != CW_OK)
         return st;
     const cw_volume *v = &r->volume.view;

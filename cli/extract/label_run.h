@@ -4,6 +4,7 @@
 
 #include "cli/extract/extract_run.h"
 #include "cli/inputs/label_choice.h"
+#include "cli/label_inputs/label_inputs.h"
 
 #include <cubewright/labels.h>
 
@@ -29,20 +30,11 @@ typedef struct cli_label_item {
         rms_error_mm; /* measured from the surface before --simplify N, --lod; NAN: not */
 } cli_label_item;
 
-/* The fields of --probabilities: components and time steps of all inputs. */
-typedef struct cli_label_fields {
-    cli_volume *more; /* the inputs behind the first */
-    size_t more_count;
-    cw_volume *views; /* of fields, count */
-    const char **names;
-    cw_label_scores scores;
-} cli_label_fields;
-
 typedef struct cli_label_run {
     const cli_extract_args *args;
-    cli_volume volume; /* the input, or the first of several */
-    cli_label_fields fields;
-    cw_volume grid; /* of the voxels that --resample made, without them; else zeroed */
+    cli_volume volume;       /* the input, or the first of several */
+    cli_label_fields fields; /* of --probabilities; else empty */
+    cw_volume grid;          /* of the voxels that --resample made, without them; else zeroed */
     cli_label_names names;
     cli_label_choice choice;
     double max_move; /* of smoothing, in voxels; 0: off */
@@ -61,18 +53,6 @@ typedef struct cli_label_run {
     cli_report report;
     double start;
 } cli_label_run;
-
-/* Reads the fields of --probabilities and says what they are. Free them with cli_free_label_fields().
- * Returns CW_ERR_ARGUMENT for an option's text that is none, as cli_read_volume() */
-CW_NODISCARD cw_status cli_read_label_fields(cli_label_run *run, cw_error *err);
-void cli_free_label_fields(cli_label_fields *fields);
-
-/* Checks the text of --probabilities, and sets the rule for the background. */
-CW_NODISCARD cw_status cli_parse_probabilities(const char *text, cw_label_scores *scores,
-                                               cw_error *err);
-
-/* Names labels of inputs that hold one each by the names of their files. */
-CW_NODISCARD cw_status cli_name_label_fields(cli_label_run *run, cw_error *err);
 
 /* Returns true if options clean the voxels of labels. */
 bool cli_cleans_labels(const cli_extract_args *args);

@@ -158,8 +158,7 @@ typedef struct search {
 
 /* Rows of one row of voxels. */
 typedef struct rows {
-    double *value, *best, *sum;
-    uint32_t *field;
+    double *value, *best, *sum, *field; /* field: its number from 1; 0: none */
 } rows;
 
 /* Loads a row of a field: NaN where it has no value. */
@@ -170,8 +169,12 @@ static void load_row(const cw_volume *v, size_t y, size_t z, double *out)
     switch (v->type) {
 #define CASE(name, ctype, text)                                                                \
     case name:                                                                                 \
-        for (size_t i = 0; i < v->dim[0]; i++)                                                 \
-            out[i] = (double)*(const ctype *)(from + (ptrdiff_t)i * stride);                   \
+        if (stride == (ptrdiff_t)sizeof(ctype))                                                \
+            for (size_t i = 0; i < v->dim[0]; i++)                                             \
+                out[i] = (double)((const ctype *)from)[i];                                     \
+        else                                                                                   \
+            for (size_t i = 0; i < v->dim[0]; i++)                                             \
+                out[i] = (double)*(const ctype *)(from + (ptrdiff_t)i * stride);               \
         break;
         CW_TYPE_TABLE(CASE)
 #undef CASE
@@ -191,14 +194,14 @@ static void compare_fields(const cwi_label_scores *f, size_t y, size_t z, const 
     for (size_t i = 0; i < count; i++) {
         r->best[i] = -INFINITY;
         r->sum[i] = 0;
-        r->field[i] = CWI_NO_FIELD;
+        r->field[i] = 0;
     }
     for (size_t n = 0; n < f->count; n++) {
-        load_row(&f->volumes[n], y, z, r->value);
+        double *restrict value = r->value, *restrict best = r->best, *restrict field = r->field;
+        load_row(&f->volumes[n], y, z, value);
         for (size_t i = 0; i < count; i++) {
-            const bool is_better = r->value[i] > r->best[i];
-            r->best[i] = is_better ? r->value[i] : r->best[i];
-            r->field[i] = is_better ? (uint32_t)n : r->field[i];
+            field[i] = value[i] > best[i] ? (double)(n + 1) : field[i];
+            best[i] = value[i] > best[i] ? value[i] : best[i];
         }
         for (size_t i = 0; i < count && f->rest; i++)
             r->sum[i] += r->value[i] == r->value[i] ? r->value[i] : 0;
@@ -212,8 +215,7 @@ static void find_layer(void *context, size_t z)
     const cw_volume *map = &f->map;
     const size_t count = map->dim[0];
     double *memory = cwi_alloc_array(count, 4 * sizeof *memory);
-    const rows r = {memory, memory + count, memory + 2 * count,
-                    (uint32_t *)(void *)(memory + 3 * count)};
+    const rows r = {memory, memory + count, memory + 2 * count, memory + 3 * count};
     if (!memory) {
         cwi_set_flag(&s->is_starved);
         return;
@@ -225,9 +227,9 @@ static void find_layer(void *context, size_t z)
             double against = f->rule == CW_BACKGROUND_VALUE ? f->value : -INFINITY;
             if (f->rest)
                 against = f->rest[first + i] = (float)(1 - r.sum[i]);
-            const bool is_label = r.field[i] != CWI_NO_FIELD && r.best[i] > against;
+            const bool is_label = r.field[i] > 0 && r.best[i] > against;
             cwi_voxel_put(map->type, (char *)s->map + (first + i) * size,
-                          is_label ? f->labels[r.field[i]] : f->background);
+                          is_label ? f->labels[(size_t)r.field[i] - 1] : f->background);
         }
     }
     cwi_free(memory);
