@@ -456,6 +456,8 @@ static cw_status run_labels(void *state, cw_error *err)
         st = extract_layers(r, err);
     if (st == CW_OK)
         cli_tell_cleaning(r);
+    if (st == CW_OK && r->choice.all)
+        cli_tell_absent_fields(r);
     if (st == CW_OK)
         st = tell_missing(r, err);
     if (st == CW_OK)

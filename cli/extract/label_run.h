@@ -78,6 +78,9 @@ enum { CLI_LABEL_LIST = 200 };
 void cli_list_label(const cli_label_run *run, uint32_t layer, uint32_t value,
                     char list[CLI_LABEL_LIST]);
 
+/* Names the fields that are the largest at no voxel, if all labels are to be extracted. */
+void cli_tell_absent_fields(const cli_label_run *run);
+
 /* Returns the voxels that are extracted: of the file, or those of --resample. */
 const cw_volume *cli_label_grid(const cli_label_run *run);
 

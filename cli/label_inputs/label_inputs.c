@@ -120,7 +120,7 @@ static void tell_fields(const char *path, const cli_label_fields *f, bool are_ma
     if (s->rule == CW_BACKGROUND_FIELD)
         snprintf(value, sizeof value, "the first is the background");
     else if (s->rule == CW_BACKGROUND_VALUE)
-        snprintf(value, sizeof value, "below %.6g is background", s->value);
+        snprintf(value, sizeof value, "up to %.6g is background", s->value);
     cli_say("%s%s: %zu field%s of labels; %s", path, files, s->count, s->count == 1 ? "" : "s",
             value);
     if (are_masks)

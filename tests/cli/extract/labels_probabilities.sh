@@ -30,6 +30,8 @@ cubewright extract all.nrrd --labels all --probabilities first -o e.ply --smooth
 # Masks have no places between voxels.
 sed 's/ *0\.[5-9][0-9]*/ 1/; s/ *0\.[0-4][0-9]*/ 0/' liver.nrrd >mask.nrrd
 cubewright extract mask.nrrd --labels all --probabilities 0.5 -o m.ply
+# A field that is nowhere the largest is named.
+cubewright extract spleen.nrrd liver.nrrd spleen.nrrd --labels all --probabilities 0.5 -o n.ply --name x
 # What cannot be is refused.
 printf 'NRRD0004\ntype: float\ndimension: 3\nsizes: 2 2 2\nencoding: ascii\n\n1 1 1 1 1 1 1 1\n' >small.nrrd
 for arguments in 'liver.nrrd small.nrrd --probabilities rest' 'liver.nrrd --probabilities first' \
