@@ -26,6 +26,8 @@ enum {
  * their own: near it, so that sheets stay apart and close to where surface nets have them. */
 static const double NEAR_FRACTION = 0.5;
 
+static const cwi_label_smoother averages = {cwi_labels_smooth, NULL};
+
 /* Vertices stay at least this far inside of their cubes, in voxels. */
 #define MARGIN 1e-3
 
@@ -277,11 +279,11 @@ static cw_status place_all(cwi_label_job *j, const cw_labels_desc *desc, cw_erro
 
 /* Smooths all vertices, gives labels their volumes, and puts vertices back where triangles cross. */
 static cw_status smooth_all(cwi_label_job *j, const cw_labels_desc *desc,
-                            cwi_label_smoother *smooth, cw_error *err)
+                            const cwi_label_smoother *smooth, cw_error *err)
 {
     cw_mesh *mesh = &j->out->mesh;
     const size_t *dim = j->layers.volume->dim;
-    const bool keeps_volumes = smooth == cwi_labels_smooth && !desc->leave_open;
+    const bool keeps_volumes = smooth->move == cwi_labels_smooth && !desc->leave_open;
     cwi_label_pressures pressures = {.moves = {.net = &j->net,
                                                .surfaces = j->out,
                                                .originals = j->originals,
@@ -299,8 +301,8 @@ static cw_status smooth_all(cwi_label_job *j, const cw_labels_desc *desc,
                        ? CW_OK
                        : cwi_fail_memory(err);
     if (st == CW_OK)
-        st = smooth(&j->net, j->originals, j->places, j->out, desc, dim,
-                    keeps_volumes ? &pressures : NULL, err);
+        st = smooth->move(keeps_volumes ? &pressures : smooth->context, &j->net, j->originals,
+                          j->places, j->out, desc, dim, err);
     cwi_free(j->net.neighbours);
     j->net.neighbours = NULL;
     mesh->positions = j->places;
@@ -319,7 +321,7 @@ static cw_status smooth_all(cwi_label_job *j, const cw_labels_desc *desc,
 
 /* Makes the surfaces that the first pass counted. */
 static cw_status make_surfaces(cwi_label_job *j, size_t chunks, const cw_labels_desc *desc,
-                               cwi_label_smoother *smooth, cw_error *err)
+                               const cwi_label_smoother *smooth, cw_error *err)
 {
     cw_status st = ensure_capacity(j, desc, err);
     j->is_writing = true;
@@ -331,7 +333,7 @@ static cw_status make_surfaces(cwi_label_job *j, size_t chunks, const cw_labels_
 }
 
 static cw_status run_job(cwi_label_job *j, const cw_labels_desc *desc,
-                         cwi_label_smoother *smooth, cw_error *err)
+                         const cwi_label_smoother *smooth, cw_error *err)
 {
     const size_t layers = j->layers.count - 1,
                  chunks = (layers + CWI_LABEL_CHUNK - 1) / CWI_LABEL_CHUNK;
@@ -430,7 +432,7 @@ static double resolve_max_move(const cw_volume *v, double max_move)
 /* Extracts the labels of a resolved volume: of its voxels or, if there is a window, of slices.
  * prediction: NULL, or filled in; then surfaces are not made */
 static cw_status extract_resolved(const cw_volume *v, cwi_label_window *window,
-                                  const cw_labels_desc *desc, cwi_label_smoother *smooth,
+                                  const cw_labels_desc *desc, const cwi_label_smoother *smooth,
                                   cw_label_prediction *prediction, cw_label_surfaces *surfaces,
                                   cw_error *err)
 {
@@ -463,8 +465,9 @@ static cw_status extract_resolved(const cw_volume *v, cwi_label_window *window,
 
 /* Extracts or predicts the labels of a volume. */
 static cw_status extract_volume(const cw_volume *volume, const cw_labels_desc *desc,
-                                cwi_label_smoother *smooth, cw_label_prediction *prediction,
-                                cw_label_surfaces *surfaces, cw_error *err)
+                                const cwi_label_smoother *smooth,
+                                cw_label_prediction *prediction, cw_label_surfaces *surfaces,
+                                cw_error *err)
 {
     const cw_labels_desc none = {0};
     cw_volume v;
@@ -487,14 +490,14 @@ static cw_status extract_source(const cw_slice_source *source, size_t chunks,
     memset(surfaces, 0, sizeof *surfaces);
     cw_status st = cwi_label_window_open(&w, source, chunks, err);
     if (st == CW_OK)
-        st = extract_resolved(&w.whole, &w, desc ? desc : &none, cwi_labels_smooth, prediction,
+        st = extract_resolved(&w.whole, &w, desc ? desc : &none, &averages, prediction,
                               surfaces, err);
     cwi_label_window_close(&w);
     return st;
 }
 
 cw_status cwi_extract_labels_with(const cw_volume *volume, const cw_labels_desc *desc,
-                                  cwi_label_smoother *smooth, cw_label_surfaces *surfaces,
+                                  const cwi_label_smoother *smooth, cw_label_surfaces *surfaces,
                                   cw_error *err)
 {
     return extract_volume(volume, desc, smooth, NULL, surfaces, err);
@@ -520,7 +523,7 @@ cw_status cw_extract_labels(const cw_volume *volume, const cw_labels_desc *desc,
 {
     CWI_REQUIRE(err, volume, surfaces);
     CWI_REQUIRE_VERSION(err, desc, 0);
-    return cwi_extract_labels_with(volume, desc, cwi_labels_smooth, surfaces, err);
+    return cwi_extract_labels_with(volume, desc, &averages, surfaces, err);
 }
 
 cw_status cw_extract_labels_predict(const cw_volume *volume, const cw_labels_desc *desc,

@@ -60,7 +60,7 @@ static int list_corners(const cwi_label_crossings *c, size_t polygon,
 /* Returns true if a vertex is where it was before smoothing. */
 static bool is_back(const cwi_label_crossings *c, uint32_t vertex)
 {
-    return (c->net->kinds[vertex] & (CWI_NET_FIXED | CWI_NET_BACK)) != 0;
+    return (c->net->kinds[vertex] & CWI_NET_BACK) != 0;
 }
 
 /* A polygon, and where it lies in the grid. */

@@ -2,6 +2,8 @@
  * each vertex [Gibson1998]. */
 #include "extract/labels/label_smooth.h"
 
+#include "extract/labels/label_pressures.h"
+
 #include "core/base/parallel.h"
 #include "core/base/status.h"
 
@@ -127,9 +129,9 @@ static cw_status average_all(averager *s, cw_error *err)
     return st;
 }
 
-cw_status cwi_labels_smooth(cwi_label_net *net, const float *originals, float *spare,
-                            cw_label_surfaces *surfaces, const cw_labels_desc *desc,
-                            const size_t dim[3], cwi_label_pressures *pressures, cw_error *err)
+cw_status cwi_labels_smooth(void *context, cwi_label_net *net, const float *originals,
+                            float *spare, cw_label_surfaces *surfaces,
+                            const cw_labels_desc *desc, const size_t dim[3], cw_error *err)
 {
     averager s = {.net = net,
                   .originals = originals,
@@ -139,6 +141,6 @@ cw_status cwi_labels_smooth(cwi_label_net *net, const float *originals, float *s
                   .count = surfaces->mesh.vertex_count,
                   .from = surfaces->mesh.positions,
                   .to = spare,
-                  .pressures = pressures};
+                  .pressures = context};
     return average_all(&s, err);
 }
