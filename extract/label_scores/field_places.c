@@ -15,6 +15,9 @@ enum { PART = 1 << 12 };
  * this much around it. */
 static const double LEAST_BOX = 0.25;
 
+/* The part of the way to their place that such vertices go at most: not to the surface of their tetrahedra. */
+static const double INSIDE = 0.98;
+
 typedef struct placer {
     const cwi_label_scores *fields;
     const cwi_label_net *net;
@@ -151,27 +154,35 @@ static uint64_t find_part_edges(const placer *p, const cube *c, size_t v)
     return edges;
 }
 
-/* Places a vertex within its bound. It stays in the plane of a cap, or where a border is open. */
+/* Places a vertex within its bound. It stays in the plane of a cap, or where a border is open. One that
+ * shares its cube moves straight towards its place, so that it stays inside of its tetrahedra. */
 static void place_vertex(const placer *p, size_t v)
 {
     const float *from = p->originals + 3 * v;
     const bool is_alone = !(p->net->kinds[v] & CWI_NET_FIXED);
     const double bound = p->desc->max_move, box = fmax(bound, LEAST_BOX);
-    double at[3];
+    double at[3], move[3], low[3], high[3];
     cube c;
     load_cube(p, v, &c);
     if (!cwi_field_cell_mean(&c.cell, is_alone ? p->cube_edges : find_part_edges(p, &c, v), at))
         return;
     if (is_alone)
         cwi_field_cell_meet(&c.cell, at);
+    double share = is_alone ? 1 : INSIDE;
     for (int a = 0; a < 3; a++) {
         const double here = (double)from[a], middle = c.first[a] + 0.5;
-        const double low = fmax(here - bound, middle - box),
-                     high = fmin(here + bound, middle + box);
+        low[a] = fmax(here - bound, middle - box);
+        high[a] = fmin(here + bound, middle + box);
+        move[a] = c.beyond[a] ? 0 : c.first[a] + at[a] - here;
+        if (!is_alone && here + share * move[a] > high[a])
+            share = (high[a] - here) / move[a];
+        if (!is_alone && here + share * move[a] < low[a])
+            share = (low[a] - here) / move[a];
+    }
+    for (int a = 0; a < 3; a++)
         if (!c.beyond[a])
             p->mesh->positions[3 * v + (size_t)a] =
-                (float)fmin(fmax(c.first[a] + at[a], low), high);
-    }
+                (float)fmin(fmax((double)from[a] + share * move[a], low[a]), high[a]);
     if (!is_alone)
         p->net->kinds[v] &= (uint8_t)~CWI_NET_BACK;
 }

@@ -24,7 +24,8 @@ typedef struct cwi_label_smoother {
 } cwi_label_smoother;
 
 /* Extracts labels as cw_extract_labels(), but moves vertices by the given function. Then volumes of
- * voxels are not kept. Triangles that cross go back as ever. */
+ * voxels are not kept. Vertices of triangles that cross go back as ever. A vertex that shares its cube
+ * stays inside of its tetrahedra, of which proofs make use. */
 CW_NODISCARD cw_status cwi_extract_labels_with(const cw_volume *volume,
                                                const cw_labels_desc *desc,
                                                const cwi_label_smoother *smooth,

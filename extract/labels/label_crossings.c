@@ -131,19 +131,20 @@ static double find_passage(const double a[3], const double b[3], const double c[
  * the half of the face on its side of the diagonal. */
 static bool passes_half(const cwi_label_crossings *c, const sector *s, int shared, int beside)
 {
-    double low[3], high[3], ends[2][3], mirrored[3], across[3];
+    double low[3], high[3], ends[2][3], at[3], first[3], mirrored[3], across[3];
     for (int a = 0; a < 3; a++) {
         const double step = s->cubes[beside][a] - s->cubes[shared][a];
-        const double at = (double)c->originals[3 * (size_t)s->corners[shared] + (size_t)a];
+        at[a] = (double)c->originals[3 * (size_t)s->corners[shared] + (size_t)a];
         low[a] = fmax(s->cubes[beside][a], s->cubes[shared][a]);
         high[a] = low[a] + (step == 0);
-        mirrored[a] = step == 0 ? at : 2 * low[a] - at;
+        mirrored[a] = step == 0 ? at[a] : 2 * low[a] - at[a];
     }
+    c->to_point(c->context, at, first);
     c->to_point(c->context, low, ends[0]);
     c->to_point(c->context, high, ends[1]);
     c->to_point(c->context, mirrored, across);
     const double here = find_passage(ends[0], ends[1], s->points[shared], s->points[beside]),
-                 straight = find_passage(ends[0], ends[1], s->points[shared], across);
+                 straight = find_passage(ends[0], ends[1], first, across);
     return straight > 0 ? here > MIN_CLEARANCE * straight : here < MIN_CLEARANCE * straight;
 }
 
