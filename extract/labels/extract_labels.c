@@ -164,6 +164,17 @@ static cw_status number_vertices(const cwi_label_job *j, size_t chunks, cw_error
     return CW_OK;
 }
 
+/* Estimates the bytes of all arrays that grow with vertices and triangles: of the mesh and, with smoothing,
+ * those in label_net.h, label_moves.h and label_crossings.h, with two corners of polygons for a triangle,
+ * and few vertices on curves. */
+static size_t estimate_bytes(const cw_mesh *mesh, bool is_smooth)
+{
+    enum { VERTEX = 12, TRIANGLE = 12, SMOOTH_VERTEX = 64, SMOOTH_TRIANGLE = 14 };
+    const size_t vertex = VERTEX + (is_smooth ? SMOOTH_VERTEX : 0),
+                 triangle = TRIANGLE + (is_smooth ? SMOOTH_TRIANGLE : 0);
+    return vertex * mesh->vertex_count + triangle * mesh->triangle_count;
+}
+
 static cw_status ensure_capacity(cwi_label_job *j, const cw_labels_desc *desc, cw_error *err)
 {
     const cw_volume *v = j->layers.volume;
@@ -173,6 +184,9 @@ static cw_status ensure_capacity(cwi_label_job *j, const cw_labels_desc *desc, c
     if (desc->max_triangles > 0 && mesh->triangle_count > desc->max_triangles)
         return cwi_fail(err, CW_ERR_LIMIT, "the labels make %zu triangles, more than %zu",
                         mesh->triangle_count, desc->max_triangles);
+    cw_status st = cwi_memory_expect(estimate_bytes(mesh, !desc->no_smoothing), err);
+    if (st != CW_OK)
+        return st;
     mesh->positions =
         cwi_alloc_large(mesh->vertex_count + CWI_SPARE_POSITIONS, 3 * sizeof *mesh->positions);
     mesh->triangles = cwi_alloc_large(mesh->triangle_count, 3 * sizeof *mesh->triangles);
@@ -185,7 +199,7 @@ static cw_status ensure_capacity(cwi_label_job *j, const cw_labels_desc *desc, c
         j->places =
             cwi_alloc_large(mesh->vertex_count + CWI_SPARE_POSITIONS, 3 * sizeof *j->places);
         if (net->neighbours)
-            memset(net->neighbours, 0xff, mesh->vertex_count * sizeof *net->neighbours);
+            cwi_set_large(net->neighbours, 0xff, mesh->vertex_count * sizeof *net->neighbours);
     }
     if (!mesh->positions || !mesh->triangles ||
         (!desc->no_smoothing && mesh->vertex_count > 0 &&
@@ -272,7 +286,8 @@ static cw_status smooth_all(cwi_label_job *j, const cw_labels_desc *desc,
                                      .net = &j->net,
                                      .to_point = index_to_point,
                                      .context = j};
-    memcpy(j->originals, mesh->positions, 3 * mesh->vertex_count * sizeof *j->originals);
+    cwi_copy_large(j->originals, mesh->positions,
+                   3 * mesh->vertex_count * sizeof *j->originals);
     cw_status st = cwi_label_net_finish(&j->net, mesh) ? CW_OK : cwi_fail_memory(err);
     if (st == CW_OK)
         st = smooth(&j->net, j->originals, j->places, j->out, desc, dim, err);
@@ -313,6 +328,8 @@ static cw_status run_job(cwi_label_job *j, const cw_labels_desc *desc,
     j->is_writing = true;
     if (st == CW_OK)
         st = run_pass(j, chunks, desc, err);
+    if (j->window)
+        cwi_label_window_close(j->window);
     if (st == CW_OK)
         st = j->originals ? smooth_all(j, desc, smooth, err) : place_all(j, desc, err);
     cwi_label_net_free(&j->net);

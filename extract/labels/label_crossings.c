@@ -159,9 +159,11 @@ cw_status cwi_label_crossings_init(cwi_label_crossings *c, const cw_labels_desc 
         return cwi_fail_memory(err);
     cw_status st = cwi_parallel_for(parts, 8 * PART, desc->threads, &desc->progress,
                                     "looking for crossings", judge_part, c, err);
-    for (size_t t = 0; t < mesh->triangle_count && st == CW_OK; t++)
+    for (size_t t = 0; t < mesh->triangle_count && st == CW_OK; t++) {
         if (c->flags[t] & CWI_POLYGON_QUEUED)
             c->queue[c->queued++] = (uint32_t)t;
+        cwi_memory_trim_at(t);
+    }
     return st;
 }
 
@@ -294,8 +296,10 @@ cw_status cwi_label_crossings_find(cwi_label_crossings *c, const cw_labels_desc 
 
 void cwi_label_crossings_renew(cwi_label_crossings *c)
 {
-    for (size_t n = 0; n < c->queued; n++)
+    for (size_t n = 0; n < c->queued; n++) {
         c->flags[c->queue[n]] &= (uint8_t)~CWI_POLYGON_QUEUED;
+        cwi_memory_trim_at(n);
+    }
     c->queued = 0;
     for (size_t v = 0; v < c->mesh->vertex_count; v++) {
         for (uint32_t k = c->net->firsts[v]; k < c->net->firsts[v + 1] && c->hits[v]; k++) {
@@ -307,6 +311,7 @@ void cwi_label_crossings_renew(cwi_label_crossings *c)
             c->queue[c->queued++] = polygon;
         }
         c->hits[v] = 0;
+        cwi_memory_trim_at(v);
     }
 }
 
