@@ -336,10 +336,8 @@ static cw_status take_label(void *user, cw_pipeline_surface *surface,
     cw_status st = r->args->check ? hold_item(r, item, err) : CW_OK;
     if (st == CW_OK)
         st = measure_item(r, item, surface, err);
-    if (!r->args->shared_faces) {
-        item->mesh = *surface->mesh;
-        *surface->mesh = (cw_mesh){0};
-    }
+    if (st == CW_OK && !r->args->shared_faces)
+        st = cli_label_store_keep(&r->store, surface->mesh, &item->mesh, err);
     if (st != CW_OK || item != &r->items[r->item_count - 1])
         return st;
     r->triangles = count_triangles(r);
@@ -418,6 +416,40 @@ static cw_status check_side_outputs(cli_label_run *r, cw_error *err)
                : st;
 }
 
+static void tell_overflow(void *user, size_t bytes)
+{
+    const cli_label_run *r = user;
+    cli_say("%s: label surfaces exceed --memory: kept in temporary files of about %s beside the "
+            "output",
+            r->args->common.inputs[0], cli_bytes((double)bytes));
+}
+
+/* Lets arrays beyond --memory go to files beside the output. Where none can be made, memory has to do. */
+static void begin_overflow(const cli_label_run *r)
+{
+    char *path = cwi_strdup(r->args->output);
+    char *brace = path ? strchr(path, '{') : NULL; /* of a name that is not known yet */
+    if (brace)
+        *brace = '\0';
+    const cw_overflow_desc desc = {.path = path, .report = tell_overflow, .user = (void *)r};
+    if (path && cw_memory_overflow(&desc, NULL) != CW_OK)
+        cli_say_v("%s: no temporary files beside it for what exceeds --memory", path);
+    cwi_free(path);
+}
+
+/* Makes room for the meshes of all labels: in a store if they exceed the memory that is left. */
+static cw_status expect_meshes(cli_label_run *r, cw_error *err)
+{
+    enum { BYTES = 3 * 12 }; /* of a triangle and half a vertex, with normals and an index while it is made */
+    size_t triangles = 0;
+    for (size_t n = 0; n < r->layer_count; n++)
+        for (size_t p = 0; p < r->layers[n].surfaces.patch_count; p++)
+            triangles += 2 * r->layers[n].surfaces.patches[p].count;
+    r->store.is_used = BYTES * triangles > cwi_memory_left();
+    return cwi_memory_expect(r->args->shared_faces ? BYTES * triangles / 2 : BYTES * triangles,
+                             err);
+}
+
 static cw_status run_labels(void *state, cw_error *err)
 {
     cli_label_run *r = state;
@@ -427,6 +459,8 @@ static cw_status run_labels(void *state, cw_error *err)
     cli_report_next(&r->report, NULL, 0); /* its path is known once the labels are */
     if (st == CW_OK)
         st = cli_name_label_file(r, err);
+    if (st == CW_OK && r->args->stream != CLI_STREAM_NEVER)
+        begin_overflow(r);
     if (st == CW_OK)
         st = read_label_map(r, err);
     if (st == CW_OK)
@@ -444,6 +478,8 @@ static cw_status run_labels(void *state, cw_error *err)
     if (st == CW_OK && r->args->lod.count)
         st = reserve_levels(r, err);
     if (st == CW_OK)
+        st = expect_meshes(r, err);
+    if (st == CW_OK)
         st = make_meshes(r, err);
     if (st == CW_OK)
         st = r->args->lod.count ? cli_write_label_levels(r, err) : cli_write_labels(r, err);
@@ -453,11 +489,12 @@ static cw_status run_labels(void *state, cw_error *err)
 static void free_run(cli_label_run *r)
 {
     for (size_t n = 0; n < r->item_count; n++)
-        cw_mesh_free(&r->items[n].mesh);
+        cli_label_store_release(&r->store, &r->items[n].mesh);
     for (size_t n = 0; n < r->layer_count; n++)
         cli_free_label_layer(&r->layers[n]);
     for (size_t n = 0; n < r->level_count * r->item_count; n++)
-        cw_mesh_free(&r->levels[n]);
+        cli_label_store_release(&r->store, &r->levels[n]);
+    cli_label_store_free(&r->store);
     free(r->levels);
     free(r->level_errors);
     free(r->items);
