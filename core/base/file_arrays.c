@@ -3,6 +3,7 @@
 #include "core/base/file_arrays.h"
 
 #include "core/base/status.h"
+#include "core/base/thread_pool.h"
 #include "core/base/unnamed_file.h"
 
 #include <errno.h>
@@ -13,6 +14,7 @@
 #include <sys/mman.h>
 #include <sys/resource.h>
 #include <sys/statvfs.h>
+#include <time.h>
 #include <unistd.h>
 
 /* Returns the bytes of files that are in this process's memory: its program and mapped arrays. */
@@ -86,6 +88,58 @@ size_t cwi_folder_room(const char *folder)
     return (size_t)disk.f_bavail * (size_t)disk.f_frsize;
 }
 
+/* --- pages in memory ------------------------------------------------------------------------ */
+
+static bool are_too_many(const cwi_file_arrays *f)
+{
+    return measure_resident() > f->resident + f->max_resident();
+}
+
+static void drop_pages(const cwi_file_arrays *f)
+{
+    for (size_t n = 0; n < atomic_load(&f->count); n++)
+        madvise(f->items[n].memory, f->items[n].bytes, MADV_DONTNEED);
+}
+
+void cwi_file_arrays_trim(cwi_file_arrays *f)
+{
+    if (!atomic_load_explicit(&f->count, memory_order_relaxed) || !are_too_many(f) ||
+        pthread_mutex_trylock(&f->lock) != 0) /* another thread does it */
+        return;
+    drop_pages(f);
+    pthread_mutex_unlock(&f->lock);
+}
+
+/* Trims as long as there are arrays. */
+static void *watch_pages(void *context)
+{
+    static const struct timespec pause = {.tv_nsec = 2000000};
+    cwi_file_arrays *f = context;
+    bool goes_on = true;
+    while (goes_on) {
+        nanosleep(&pause, NULL);
+        const bool drops = are_too_many(f);
+        pthread_mutex_lock(&f->lock);
+        if (drops)
+            drop_pages(f);
+        goes_on = f->is_watched = atomic_load(&f->count) > 0;
+        pthread_mutex_unlock(&f->lock);
+    }
+    return NULL;
+}
+
+static void start_watching(cwi_file_arrays *f)
+{
+    pthread_t thread;
+    f->is_watched =
+        f->is_watched || (cwi_start_thread(&thread, watch_pages, f) && pthread_detach(thread) == 0);
+}
+
+void cwi_file_arrays_forked(cwi_file_arrays *f)
+{
+    f->is_watched = false;
+}
+
 /* --- arrays --------------------------------------------------------------------------------- */
 
 /* Reserves the bytes of a file, so that none is missing when it is written to. Returns a number of
@@ -149,8 +203,10 @@ void *cwi_file_array_new(cwi_file_arrays *f, size_t bytes, int *error)
         f->resident = measure_resident();
     if (f->folder && reserve_item(f))
         memory = map_file(f->folder, bytes, error);
-    if (memory)
+    if (memory) {
         insert_array(f, memory, bytes);
+        start_watching(f);
+    }
     pthread_mutex_unlock(&f->lock);
     return memory;
 }
@@ -192,15 +248,4 @@ size_t cwi_file_array_size(cwi_file_arrays *f, const void *memory)
         bytes = f->items[n].bytes;
     pthread_mutex_unlock(&f->lock);
     return bytes;
-}
-
-void cwi_file_arrays_trim(cwi_file_arrays *f, size_t max_resident)
-{
-    if (!atomic_load_explicit(&f->count, memory_order_relaxed) ||
-        measure_resident() <= f->resident + max_resident ||
-        pthread_mutex_trylock(&f->lock) != 0) /* another thread does it */
-        return;
-    for (size_t n = 0; n < atomic_load(&f->count); n++)
-        madvise(f->items[n].memory, f->items[n].bytes, MADV_DONTNEED);
-    pthread_mutex_unlock(&f->lock);
 }

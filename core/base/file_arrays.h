@@ -18,7 +18,7 @@ typedef struct cwi_file_array {
     size_t bytes;
 } cwi_file_array;
 
-/* All arrays of a process. Zero it but for the lock. */
+/* All arrays of a process. Set the lock and max_resident, and zero the rest. */
 typedef struct cwi_file_arrays {
     pthread_mutex_t lock; /* for all that is not atomic */
     atomic_size_t count;
@@ -28,6 +28,8 @@ typedef struct cwi_file_arrays {
     char *folder;    /* of new arrays; NULL: none are made */
     pid_t owner;     /* process that may make arrays: those that it forked share its files */
     size_t resident; /* bytes of files in memory before the first array: of the program */
+    size_t (*max_resident)(void); /* returns the bytes of arrays that may be in memory */
+    bool is_watched;              /* a thread trims while there are arrays */
 } cwi_file_arrays;
 
 /* Sets the folder of the files of new arrays; NULL: none are made from now on.
@@ -48,9 +50,13 @@ bool cwi_file_array_free(cwi_file_arrays *files, const void *memory);
 /* Returns the size of an array; 0 for memory that is none of them. */
 size_t cwi_file_array_size(cwi_file_arrays *files, const void *memory);
 
-/* Leaves all arrays to their files if more than some bytes of them are in memory. They are read again
- * where they are used, by any thread at any time. */
-void cwi_file_arrays_trim(cwi_file_arrays *files, size_t max_resident);
+/* Leaves all arrays to their files if more than max_resident() bytes of them are in memory. They are read
+ * again where they are used, by any thread at any time. A thread does so every other millisecond; one
+ * that works on arrays may do it by itself, so as not to depend on that. */
+void cwi_file_arrays_trim(cwi_file_arrays *files);
+
+/* Tells that this process was forked: no thread trims in it. */
+void cwi_file_arrays_forked(cwi_file_arrays *files);
 
 /* Returns the bytes that a folder's disk has room for; SIZE_MAX: unknown. */
 size_t cwi_folder_room(const char *folder);

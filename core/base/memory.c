@@ -53,8 +53,11 @@ struct cwi_memory_account {
     atomic_bool overflows;      /* large arrays go to files before the limit is reached */
 };
 
+static size_t find_max_resident(void);
+
 static cwi_memory_account own_account = {.next_fails = fail_by_request,
-                                         .files = {.lock = PTHREAD_MUTEX_INITIALIZER}};
+                                         .files = {.lock = PTHREAD_MUTEX_INITIALIZER,
+                                                   .max_resident = find_max_resident}};
 
 /* The account of this process. Threads may load a module at the same time: each shares the same
  * account with it. */
@@ -183,10 +186,16 @@ static void unlock_files(void)
     pthread_mutex_unlock(&account->files.lock);
 }
 
+static void leave_parent(void)
+{
+    cwi_file_arrays_forked(&account->files);
+    unlock_files();
+}
+
 /* A forked process has its own lock, and whole lists. */
 static void watch_forks(void)
 {
-    pthread_atfork(lock_files, unlock_files, unlock_files);
+    pthread_atfork(lock_files, unlock_files, leave_parent);
 }
 
 cw_status cw_memory_overflow(const cw_overflow_desc *desc, cw_error *err)
@@ -265,10 +274,21 @@ cw_status cwi_memory_expect(size_t bytes, cw_error *err)
                     needed_text, folder, room_text);
 }
 
+/* Returns the bytes of files that may be in memory: half of what is left. The other half is for those that
+ * threads add before they are dropped. */
+static size_t find_max_resident(void)
+{
+    return cwi_memory_left() / 2;
+}
+
 void cwi_memory_trim(void)
 {
-    const size_t left = cwi_memory_left();
-    cwi_file_arrays_trim(&account->files, left - left / 4);
+    cwi_file_arrays_trim(&account->files);
+}
+
+bool cwi_memory_is_in_file(const void *memory)
+{
+    return cwi_file_array_size(&account->files, memory) > 0;
 }
 
 enum { COPIED = 1 << 20 }; /* bytes between two trims */

@@ -61,6 +61,9 @@ CW_NODISCARD cw_status cwi_memory_expect(size_t bytes, cw_error *err);
  * array is in a file, and microseconds otherwise. */
 void cwi_memory_trim(void);
 
+/* Returns true for an array that is in a file. */
+bool cwi_memory_is_in_file(const void *memory);
+
 /* Trims at every 16384th element of a sweep. */
 static inline void cwi_memory_trim_at(size_t n)
 {

@@ -142,9 +142,11 @@ static void judge_polygon(cwi_label_crossings *c, size_t polygon, bool may_turn)
 static void judge_part(void *context, size_t n)
 {
     cwi_label_crossings *c = context;
-    for (size_t t = n * PART; t < (n + 1) * PART && t < c->mesh->triangle_count; t++)
+    for (size_t t = n * PART; t < (n + 1) * PART && t < c->mesh->triangle_count; t++) {
         if (c->net->polygons[t])
             judge_polygon(c, t, true);
+        cwi_label_trim(t);
+    }
 }
 
 cw_status cwi_label_crossings_init(cwi_label_crossings *c, const cw_labels_desc *desc,

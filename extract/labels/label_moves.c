@@ -64,7 +64,7 @@ static void measure_patch(void *context, size_t n)
         areas += area;
         if (m->is_first)
             add_directions(m, t, n, normal, area);
-        cwi_memory_trim_at(t);
+        cwi_label_trim(t);
     }
     m->patches[n].volume = volume / 6;
     m->patches[n].area = areas / 2;
@@ -100,6 +100,8 @@ static size_t find_curve_shares(const cwi_label_moves *m, uint32_t vertex,
     const cwi_label_net *net = m->net;
     const cw_label_surfaces *f = m->surfaces;
     size_t patch_end = 0, count = 0;
+    if (vertex % 64 == 0) /* each looks at places far from each other */
+        cwi_memory_trim();
     for (uint32_t k = net->firsts[vertex]; k < net->firsts[vertex + 1]; k++) {
         if (net->around[k] >= patch_end) { /* they rise */
             const size_t patch = find_patch(f, net->around[k]);
@@ -271,8 +273,10 @@ static void move_part(void *context, size_t n)
 {
     const cwi_label_moves *m = context;
     const size_t count = m->few ? m->few_count : m->surfaces->mesh.vertex_count;
-    for (size_t i = n * PART; i < (n + 1) * PART && i < count; i++)
+    for (size_t i = n * PART; i < (n + 1) * PART && i < count; i++) {
         move_inner(m, m->few ? m->few[i] : i);
+        cwi_label_trim(i);
+    }
 }
 
 static void add_held(const cwi_label_moves *m, size_t v, const cwi_label_direction *d,
@@ -295,7 +299,7 @@ static void find_held(const cwi_label_moves *m)
         const size_t v = m->few ? m->few[i] : i;
         if ((m->held[v] || is_back(m, v)) && m->directions[v].area > 0)
             add_held(m, v, &m->directions[v], m->directions[v].area);
-        cwi_memory_trim_at(i);
+        cwi_label_trim(i);
     }
     for (size_t i = 0; i < m->curve_count; i++) {
         cwi_memory_trim_at(i);
@@ -326,15 +330,17 @@ static bool list_few(cwi_label_moves *m)
             continue;
         for (size_t i = 0; i < 3 * f->patches[n].count; i++) {
             uint8_t *held = &m->held[corner[i]];
-            cwi_memory_trim_at(i);
+            cwi_label_trim(i);
             if (m->directions[corner[i]].area > 0 && !(*held & LISTED)) {
                 *held |= LISTED;
                 m->few[m->few_count++] = corner[i];
             }
         }
     }
-    for (size_t i = 0; i < m->few_count; i++)
+    for (size_t i = 0; i < m->few_count; i++) {
         m->held[m->few[i]] &= (uint8_t)~LISTED;
+        cwi_label_trim(i);
+    }
     return m->few;
 }
 

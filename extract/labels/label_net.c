@@ -28,7 +28,7 @@ bool cwi_label_net_finish(cwi_label_net *net, const cw_mesh *mesh)
     for (size_t t = 0; t < mesh->triangle_count; t++) {
         for (int n = net->polygons[t] ? cwi_polygon_corners(net, mesh, t, v) : 0; n-- > 0;)
             net->firsts[v[n]]++;
-        cwi_memory_trim_at(t);
+        cwi_label_trim(t);
     }
     for (size_t n = 0; n <= mesh->vertex_count; n++) {
         total += net->firsts[n];
@@ -41,7 +41,7 @@ bool cwi_label_net_finish(cwi_label_net *net, const cw_mesh *mesh)
     for (size_t t = mesh->triangle_count; t-- > 0;) {
         for (int n = net->polygons[t] ? cwi_polygon_corners(net, mesh, t, v) : 0; n-- > 0;)
             net->around[--net->firsts[v[n]]] = (uint32_t)t;
-        cwi_memory_trim_at(t);
+        cwi_label_trim(t);
     }
     return true;
 }
