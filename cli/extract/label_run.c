@@ -337,7 +337,7 @@ static cw_status take_label(void *user, cw_pipeline_surface *surface,
     if (st == CW_OK)
         st = measure_item(r, item, surface, err);
     if (st == CW_OK && !r->args->shared_faces)
-        st = cli_label_store_keep(&r->store, surface->mesh, &item->mesh, err);
+        st = cli_mesh_store_keep(&r->store, surface->mesh, &item->mesh, err);
     if (st != CW_OK || item != &r->items[r->item_count - 1])
         return st;
     r->triangles = count_triangles(r);
@@ -419,9 +419,10 @@ static cw_status check_side_outputs(cli_label_run *r, cw_error *err)
 static void tell_overflow(void *user, size_t bytes)
 {
     const cli_label_run *r = user;
-    cli_say("%s: label surfaces exceed --memory: kept in temporary files of about %s beside the "
-            "output",
-            r->args->common.inputs[0], cli_bytes((double)bytes));
+    cli_say(
+        "%s: label surfaces exceed --memory: kept in temporary files of about %s beside the "
+        "output",
+        r->args->common.inputs[0], cli_bytes((double)bytes));
 }
 
 /* Lets arrays beyond --memory go to files beside the output. Where none can be made, memory has to do. */
@@ -437,17 +438,21 @@ static void begin_overflow(const cli_label_run *r)
     cwi_free(path);
 }
 
-/* Makes room for the meshes of all labels: in a store if they exceed the memory that is left. */
+/* Announces the meshes of all labels, or interfaces. They go to a store if they may exceed the memory that is
+ * left. */
 static cw_status expect_meshes(cli_label_run *r, cw_error *err)
 {
-    enum { BYTES = 3 * 12 }; /* of a triangle and half a vertex, with normals and an index while it is made */
+    enum { TRIANGLE = 24 }; /* bytes, with half a vertex and its normal */
     size_t triangles = 0;
-    for (size_t n = 0; n < r->layer_count; n++)
-        for (size_t p = 0; p < r->layers[n].surfaces.patch_count; p++)
-            triangles += 2 * r->layers[n].surfaces.patches[p].count;
-    r->store.is_used = BYTES * triangles > cwi_memory_left();
-    return cwi_memory_expect(r->args->shared_faces ? BYTES * triangles / 2 : BYTES * triangles,
-                             err);
+    for (size_t n = 0; n < r->layer_count; n++) {
+        const cw_label_surfaces *s = &r->layers[n].surfaces;
+        for (size_t p = 0; p < s->patch_count; p++)
+            triangles +=
+                s->patches[p].count *
+                (r->args->shared_faces || s->patches[p].labels[1] == s->background ? 1 : 2);
+    }
+    r->store.is_used = TRIANGLE * triangles > cwi_memory_left() / 2;
+    return cwi_memory_expect(TRIANGLE * triangles, err);
 }
 
 static cw_status run_labels(void *state, cw_error *err)
@@ -489,12 +494,12 @@ static cw_status run_labels(void *state, cw_error *err)
 static void free_run(cli_label_run *r)
 {
     for (size_t n = 0; n < r->item_count; n++)
-        cli_label_store_release(&r->store, &r->items[n].mesh);
+        cli_mesh_store_release(&r->store, &r->items[n].mesh);
     for (size_t n = 0; n < r->layer_count; n++)
         cli_free_label_layer(&r->layers[n]);
     for (size_t n = 0; n < r->level_count * r->item_count; n++)
-        cli_label_store_release(&r->store, &r->levels[n]);
-    cli_label_store_free(&r->store);
+        cli_mesh_store_release(&r->store, &r->levels[n]);
+    cli_mesh_store_free(&r->store);
     free(r->levels);
     free(r->level_errors);
     free(r->items);
@@ -520,5 +525,6 @@ cw_status cli_extract_labels(const cli_extract_args *args, cw_error *err)
                          .state = &r};
     cw_status st = cli_run_reported(&run, &r.report, err);
     free_run(&r);
-    return st;
+    const cw_status closed = cw_memory_overflow(NULL, NULL);
+    return st == CW_OK ? closed : st;
 }

@@ -131,8 +131,8 @@ static void *watch_pages(void *context)
 static void start_watching(cwi_file_arrays *f)
 {
     pthread_t thread;
-    f->is_watched =
-        f->is_watched || (cwi_start_thread(&thread, watch_pages, f) && pthread_detach(thread) == 0);
+    f->is_watched = f->is_watched ||
+                    (cwi_start_thread(&thread, watch_pages, f) && pthread_detach(thread) == 0);
 }
 
 void cwi_file_arrays_forked(cwi_file_arrays *f)

@@ -22,7 +22,7 @@ typedef struct cwi_file_array {
 typedef struct cwi_file_arrays {
     pthread_mutex_t lock; /* for all that is not atomic */
     atomic_size_t count;
-    atomic_size_t bytes; /* of all arrays */
+    atomic_size_t bytes;   /* of all arrays */
     cwi_file_array *items; /* rising by address */
     size_t capacity;
     char *folder;    /* of new arrays; NULL: none are made */

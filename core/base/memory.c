@@ -55,9 +55,9 @@ struct cwi_memory_account {
 
 static size_t find_max_resident(void);
 
-static cwi_memory_account own_account = {.next_fails = fail_by_request,
-                                         .files = {.lock = PTHREAD_MUTEX_INITIALIZER,
-                                                   .max_resident = find_max_resident}};
+static cwi_memory_account own_account = {
+    .next_fails = fail_by_request,
+    .files = {.lock = PTHREAD_MUTEX_INITIALIZER, .max_resident = find_max_resident}};
 
 /* The account of this process. Threads may load a module at the same time: each shares the same
  * account with it. */
@@ -119,11 +119,11 @@ static cw_status fail_file(size_t needed, int error, cw_error *err)
 {
     char needed_text[CWI_MEMORY_TEXT];
     cwi_print_memory(needed, needed_text);
-    return cwi_fail(err, CW_ERR_NO_MEMORY,
-                    "no memory: %s were needed beyond cw_memory_limit(), and a temporary file in "
-                    "'%s' cannot hold them: %s",
-                    needed_text, account->files.folder ? account->files.folder : "",
-                    strerror(error));
+    return cwi_fail(
+        err, CW_ERR_NO_MEMORY,
+        "no memory: %s were needed beyond cw_memory_limit(), and a temporary file in "
+        "'%s' cannot hold them: %s",
+        needed_text, account->files.folder ? account->files.folder : "", strerror(error));
 }
 
 cw_status cwi_fail_memory(cw_error *err)
@@ -268,10 +268,11 @@ cw_status cwi_memory_expect(size_t bytes, cw_error *err)
     }
     cwi_print_memory(bytes, needed_text);
     cwi_print_memory(room, room_text);
-    return cwi_fail(err, CW_ERR_OUTPUT,
-                    "arrays of %s exceed what cw_memory_limit() leaves, and '%s' has room for %s: "
-                    "free it, choose an output on another disk, or raise the limit",
-                    needed_text, folder, room_text);
+    return cwi_fail(
+        err, CW_ERR_OUTPUT,
+        "arrays of %s exceed what cw_memory_limit() leaves, and '%s' has room for %s: "
+        "free it, choose an output on another disk, or raise the limit",
+        needed_text, folder, room_text);
 }
 
 /* Returns the bytes of files that may be in memory: half of what is left. The other half is for those that
@@ -521,7 +522,8 @@ void *cwi_alloc_large(size_t count, size_t size)
 
 void *cwi_renew_large(void *memory, size_t count, size_t size)
 {
-    const size_t more = memory ? count / 8 : 0, in_file = cwi_file_array_size(&account->files, memory),
+    const size_t more = memory ? count / 8 : 0,
+                 in_file = cwi_file_array_size(&account->files, memory),
                  capacity = in_file ? in_file : capacity_of(memory);
     size_t bytes;
     if (memory && is_usable(count, size, &bytes) && bytes <= capacity && bytes >= capacity / 2)

@@ -50,7 +50,7 @@ void cwi_memory_give(size_t bytes);
 /* Returns the bytes that may still be allocated; SIZE_MAX without a limit. */
 size_t cwi_memory_left(void);
 
-/* Tells that arrays of so many bytes follow. If they exceed the limit, and cw_memory_overflow() has a
+/* Announces arrays of some bytes. If they exceed the limit, and cw_memory_overflow() has a
  * folder for them, large ones go to files from now on, so that half of the limit is left for the pages of
  * these.
  * Returns  CW_ERR_OUTPUT: the disk has no room for them */

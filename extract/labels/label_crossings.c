@@ -313,7 +313,7 @@ void cwi_label_crossings_renew(cwi_label_crossings *c)
             c->queue[c->queued++] = polygon;
         }
         c->hits[v] = 0;
-        cwi_memory_trim_at(v);
+        cwi_label_trim(v);
     }
 }
 

@@ -31,7 +31,7 @@ static bool put_back(const cwi_label_crossings *c, cw_mesh *mesh, cwi_label_move
 {
     bool is_any = false;
     for (size_t v = 0; v < mesh->vertex_count; v++) {
-        cwi_memory_trim_at(v);
+        cwi_label_trim(v);
         if (!c->hits[v])
             continue;
         place_vertex(c, mesh, v, c->originals);
@@ -73,7 +73,7 @@ static cw_status repair_volumes(cwi_label_crossings *c, cw_mesh *mesh, cwi_label
     for (size_t v = 0; v < mesh->vertex_count; v++) {
         if (c->hits[v])
             place_vertex(c, mesh, v, p->moves.places);
-        cwi_memory_trim_at(v);
+        cwi_label_trim(v);
     }
     cwi_label_crossings_renew(c);
     *is_kept = c->queued == 0 && restores;

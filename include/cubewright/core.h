@@ -98,7 +98,8 @@ CW_API size_t cw_memory_used(void);
 /* Where arrays beyond the limit go. Zero-initialise it and set what you need. */
 typedef struct cw_overflow_desc {
     uint32_t version; /* 0: the first version of this struct */
-    const char *path; /* temporary files without a name stand in the folder of this path; copied */
+    const char
+        *path; /* temporary files without a name stand in the folder of this path; copied */
     /* Called once, on any thread, before the first array goes to a file: with the bytes that
      * are known to follow. Default: none */
     void (*report)(void *user, size_t bytes);
