@@ -260,7 +260,7 @@ static cw_status add_patch(cli_label_run *r, const cli_label_layer *layer,
     cw_mesh made;
     cw_status st = cw_label_patch_mesh(&layer->surfaces, patch, &made, err);
     if (st == CW_OK)
-        st = cli_mesh_store_keep(&r->store, &made, mesh, err);
+        st = cwi_mesh_store_keep(&r->store, &made, mesh, err);
     if (st != CW_OK)
         cw_mesh_free(&made);
     return st;
@@ -293,7 +293,7 @@ static cw_status write_patches(cli_label_run *r, const char *found, cw_error *er
     if (st == CW_OK)
         st = deliver_file(r, 0, parts, count, 0, r->item_count, NULL, found, err);
     for (size_t n = 0; n < count; n++)
-        cli_mesh_store_release(&r->store, &meshes[n]);
+        cwi_mesh_store_release(&r->store, &meshes[n]);
     free(parts);
     free(meshes);
     free(labels);

@@ -337,7 +337,7 @@ static cw_status take_label(void *user, cw_pipeline_surface *surface,
     if (st == CW_OK)
         st = measure_item(r, item, surface, err);
     if (st == CW_OK && !r->args->shared_faces)
-        st = cli_mesh_store_keep(&r->store, surface->mesh, &item->mesh, err);
+        st = cwi_mesh_store_keep(&r->store, surface->mesh, &item->mesh, err);
     if (st != CW_OK || item != &r->items[r->item_count - 1])
         return st;
     r->triangles = count_triangles(r);
@@ -494,12 +494,12 @@ static cw_status run_labels(void *state, cw_error *err)
 static void free_run(cli_label_run *r)
 {
     for (size_t n = 0; n < r->item_count; n++)
-        cli_mesh_store_release(&r->store, &r->items[n].mesh);
+        cwi_mesh_store_release(&r->store, &r->items[n].mesh);
     for (size_t n = 0; n < r->layer_count; n++)
         cli_free_label_layer(&r->layers[n]);
     for (size_t n = 0; n < r->level_count * r->item_count; n++)
-        cli_mesh_store_release(&r->store, &r->levels[n]);
-    cli_mesh_store_free(&r->store);
+        cwi_mesh_store_release(&r->store, &r->levels[n]);
+    cwi_mesh_store_free(&r->store);
     free(r->levels);
     free(r->level_errors);
     free(r->items);

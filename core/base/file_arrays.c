@@ -95,19 +95,22 @@ static bool are_too_many(const cwi_file_arrays *f)
     return measure_resident() > f->resident + f->max_resident();
 }
 
-static void drop_pages(const cwi_file_arrays *f)
+/* Drops pages if there are too many. Threads wait for one that does: meanwhile they would add others. */
+static void drop_pages(cwi_file_arrays *f)
 {
-    for (size_t n = 0; n < atomic_load(&f->count); n++)
+    if (!are_too_many(f))
+        return;
+    pthread_mutex_lock(&f->lock);
+    const size_t count = are_too_many(f) ? atomic_load(&f->count) : 0;
+    for (size_t n = 0; n < count; n++)
         madvise(f->items[n].memory, f->items[n].bytes, MADV_DONTNEED);
+    pthread_mutex_unlock(&f->lock);
 }
 
 void cwi_file_arrays_trim(cwi_file_arrays *f)
 {
-    if (!atomic_load_explicit(&f->count, memory_order_relaxed) || !are_too_many(f) ||
-        pthread_mutex_trylock(&f->lock) != 0) /* another thread does it */
-        return;
-    drop_pages(f);
-    pthread_mutex_unlock(&f->lock);
+    if (atomic_load_explicit(&f->count, memory_order_relaxed) > 0)
+        drop_pages(f);
 }
 
 /* Trims as long as there are arrays. */
@@ -118,10 +121,8 @@ static void *watch_pages(void *context)
     bool goes_on = true;
     while (goes_on) {
         nanosleep(&pause, NULL);
-        const bool drops = are_too_many(f);
+        drop_pages(f);
         pthread_mutex_lock(&f->lock);
-        if (drops)
-            drop_pages(f);
         goes_on = f->is_watched = atomic_load(&f->count) > 0;
         pthread_mutex_unlock(&f->lock);
     }

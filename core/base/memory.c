@@ -275,11 +275,11 @@ cw_status cwi_memory_expect(size_t bytes, cw_error *err)
         needed_text, folder, room_text);
 }
 
-/* Returns the bytes of files that may be in memory: half of what is left. The other half is for those that
- * threads add before they are dropped. */
+/* Returns the bytes of files that may be in memory: a third of what is left. The rest is for those that
+ * threads add before they are dropped, and for what malloc() adds to arrays. */
 static size_t find_max_resident(void)
 {
-    return cwi_memory_left() / 2;
+    return cwi_memory_left() / 3;
 }
 
 void cwi_memory_trim(void)

@@ -32,7 +32,8 @@
 enum {
     PART = 1 << 14,  /* triangles */
     QUEUE_PART = 64, /* polygons */
-    SEEN = 128       /* polygons that a search remembers */
+    SEEN = 128,      /* polygons that a search remembers */
+    FAR = 8          /* polygons around vertices, which are on pages far from each other */
 };
 
 /* The edge passes through a sound polygon at least this fraction of its length from its ends. That
@@ -284,8 +285,11 @@ static void test_around(cwi_label_crossings *c, size_t polygon)
 static void test_part(void *context, size_t n)
 {
     cwi_label_crossings *c = context;
-    for (size_t i = n * QUEUE_PART; i < (n + 1) * QUEUE_PART && i < c->queued; i++)
+    for (size_t i = n * QUEUE_PART; i < (n + 1) * QUEUE_PART && i < c->queued; i++) {
         test_around(c, c->queue[i]);
+        if (i % FAR == 0)
+            cwi_memory_trim();
+    }
 }
 
 cw_status cwi_label_crossings_find(cwi_label_crossings *c, const cw_labels_desc *desc,
@@ -312,6 +316,8 @@ void cwi_label_crossings_renew(cwi_label_crossings *c)
             c->flags[polygon] |= CWI_POLYGON_QUEUED;
             c->queue[c->queued++] = polygon;
         }
+        if (c->hits[v] && c->queued % FAR == 0)
+            cwi_memory_trim();
         c->hits[v] = 0;
         cwi_label_trim(v);
     }

@@ -18,6 +18,13 @@ enum {
     LISTED = 0x80 /* beside the bits of a vertex that is held */
 };
 
+/* Trims memory in sweeps over listed vertices, of patches that may be small and far from each other. */
+static void trim_few(size_t n)
+{
+    if (n % 128 == 0)
+        cwi_memory_trim();
+}
+
 /* Computes a triangle's normal on the outside, as long as twice its area. Returns a corner. */
 static inline const float *find_normal(const cwi_label_moves *m, size_t t, double normal[3])
 {
@@ -275,7 +282,7 @@ static void move_part(void *context, size_t n)
     const size_t count = m->few ? m->few_count : m->surfaces->mesh.vertex_count;
     for (size_t i = n * PART; i < (n + 1) * PART && i < count; i++) {
         move_inner(m, m->few ? m->few[i] : i);
-        cwi_label_trim(i);
+        trim_few(i);
     }
 }
 
@@ -299,7 +306,7 @@ static void find_held(const cwi_label_moves *m)
         const size_t v = m->few ? m->few[i] : i;
         if ((m->held[v] || is_back(m, v)) && m->directions[v].area > 0)
             add_held(m, v, &m->directions[v], m->directions[v].area);
-        cwi_label_trim(i);
+        trim_few(i);
     }
     for (size_t i = 0; i < m->curve_count; i++) {
         cwi_memory_trim_at(i);
@@ -330,7 +337,7 @@ static bool list_few(cwi_label_moves *m)
             continue;
         for (size_t i = 0; i < 3 * f->patches[n].count; i++) {
             uint8_t *held = &m->held[corner[i]];
-            cwi_label_trim(i);
+            trim_few(i);
             if (m->directions[corner[i]].area > 0 && !(*held & LISTED)) {
                 *held |= LISTED;
                 m->few[m->few_count++] = corner[i];
@@ -339,7 +346,7 @@ static bool list_few(cwi_label_moves *m)
     }
     for (size_t i = 0; i < m->few_count; i++) {
         m->held[m->few[i]] &= (uint8_t)~LISTED;
-        cwi_label_trim(i);
+        trim_few(i);
     }
     return m->few;
 }

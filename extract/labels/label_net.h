@@ -45,11 +45,11 @@ static inline size_t cwi_polygon_end(const cwi_label_net *net, const cw_mesh *me
 int cwi_polygon_corners(const cwi_label_net *net, const cw_mesh *mesh, size_t polygon,
                         uint32_t corners[CWI_POLYGON_CORNERS]);
 
-/* Trims memory in sweeps by patches, at every 2048th element: their vertices are on pages far from each
+/* Trims memory in sweeps by patches, at every 1024th element: their vertices are on pages far from each
  * other. */
 static inline void cwi_label_trim(size_t n)
 {
-    if (n % (1 << 11) == 0)
+    if (n % (1 << 10) == 0)
         cwi_memory_trim();
 }
 

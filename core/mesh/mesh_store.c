@@ -1,5 +1,5 @@
 /* Moves the arrays of meshes to blocks, one behind the other. */
-#include "cli/results/mesh_store.h"
+#include "core/mesh/mesh_store.h"
 
 #include "core/base/memory.h"
 #include "core/base/status.h"
@@ -32,7 +32,7 @@ static size_t round_up(size_t bytes)
 }
 
 /* Reserves bytes in the last block, or a new one. Returns false when memory is out. */
-static bool reserve_bytes(cli_mesh_store *s, size_t bytes)
+static bool reserve_bytes(cwi_mesh_store *s, size_t bytes)
 {
     if (bytes <= s->room)
         return true;
@@ -47,7 +47,7 @@ static bool reserve_bytes(cli_mesh_store *s, size_t bytes)
     return true;
 }
 
-cw_status cli_mesh_store_keep(cli_mesh_store *s, cw_mesh *from, cw_mesh *kept, cw_error *err)
+cw_status cwi_mesh_store_keep(cwi_mesh_store *s, cw_mesh *from, cw_mesh *kept, cw_error *err)
 {
     size_t bytes, total = 0;
     void **array;
@@ -70,7 +70,7 @@ cw_status cli_mesh_store_keep(cli_mesh_store *s, cw_mesh *from, cw_mesh *kept, c
     return CW_OK;
 }
 
-void cli_mesh_store_release(const cli_mesh_store *s, cw_mesh *kept)
+void cwi_mesh_store_release(const cwi_mesh_store *s, cw_mesh *kept)
 {
     size_t bytes;
     void **array;
@@ -79,10 +79,10 @@ void cli_mesh_store_release(const cli_mesh_store *s, cw_mesh *kept)
     cw_mesh_free(kept);
 }
 
-void cli_mesh_store_free(cli_mesh_store *s)
+void cwi_mesh_store_free(cwi_mesh_store *s)
 {
     for (size_t n = 0; n < s->count; n++)
         cwi_free(s->blocks[n]);
     cwi_free(s->blocks);
-    *s = (cli_mesh_store){0};
+    *s = (cwi_mesh_store){0};
 }
