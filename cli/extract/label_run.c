@@ -451,6 +451,8 @@ static cw_status expect_meshes(cli_label_run *r, cw_error *err)
                 s->patches[p].count *
                 (r->args->shared_faces || s->patches[p].labels[1] == s->background ? 1 : 2);
     }
+    if (r->error_mm > 0 || r->target || r->args->lod.count) /* it jumps between pages */
+        return cw_memory_overflow(NULL, err);
     r->store.is_used = TRIANGLE * triangles > cwi_memory_left() / 2;
     return cwi_memory_expect(TRIANGLE * triangles, err);
 }
