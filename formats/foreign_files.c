@@ -4,6 +4,7 @@
 #include "core/base/status.h"
 #include "formats/bytes/file_pattern.h"
 #include "formats/bytes/zip_read.h"
+#include "formats/npy/npy_format.h"
 #include "formats/vtkhdf/vtkhdf_format.h"
 
 #include <string.h>
@@ -63,7 +64,8 @@ const char *cwi_name_foreign(const char *path, const unsigned char *head, size_t
 static bool is_other_zip(const cwi_input *in, const unsigned char *head, size_t size)
 {
     cwi_unzip z = {0};
-    if (size < 4 || memcmp(head, "PK", 2) != 0 || cwi_has_extension(in->path, ".3mf") ||
+    if (size < 4 || memcmp(head, "PK", 2) != 0 || cwi_has_extension(in->path, ".3mf .npz") ||
+        cwi_npz_sniff(head, size < CWI_SNIFF_BYTES ? size : CWI_SNIFF_BYTES) ||
         cwi_unzip_open(&z, in, NULL) != CW_OK)
         return false;
     const bool is_package = cwi_unzip_has(&z, "[Content_Types].xml");

@@ -36,18 +36,18 @@
 #include <string.h>
 
 static const cwi_format_driver *const drivers[] = {
-    &cwi_format_nrrd,         &cwi_format_nifti,      &cwi_format_metaimage,
-    &cwi_format_vtk,          &cwi_format_vtu,        &cwi_format_vtm,
-    &cwi_format_vti,          &cwi_format_vtkhdf,     &cwi_format_mrc,
-    &cwi_format_inr,          &cwi_format_mgh,        &cwi_format_npy,
-    &cwi_format_dicom,        &cwi_format_tiff,       &cwi_format_png,
-    &cwi_format_bmp,          &cwi_format_zarr,       &cwi_format_n5,
-    &cwi_format_precomputed,  &cwi_format_vdb,        &cwi_format_plot3d,
-    &cwi_format_raw,          &cwi_format_glb,        &cwi_format_gltf,
-    &cwi_format_stl,          &cwi_format_ply,        &cwi_format_obj,
-    &cwi_format_off,          &cwi_format_3mf,        &cwi_format_vtp,
-    &cwi_format_gifti,        &cwi_format_freesurfer, &cwi_format_drc,
-    &cwi_format_neuroglancer,
+    &cwi_format_nrrd,   &cwi_format_nifti,        &cwi_format_metaimage,
+    &cwi_format_vtk,    &cwi_format_vtu,          &cwi_format_vtm,
+    &cwi_format_vti,    &cwi_format_vtkhdf,       &cwi_format_mrc,
+    &cwi_format_inr,    &cwi_format_mgh,          &cwi_format_npy,
+    &cwi_format_npz,    &cwi_format_dicom,        &cwi_format_tiff,
+    &cwi_format_png,    &cwi_format_bmp,          &cwi_format_zarr,
+    &cwi_format_n5,     &cwi_format_precomputed,  &cwi_format_vdb,
+    &cwi_format_plot3d, &cwi_format_raw,          &cwi_format_glb,
+    &cwi_format_gltf,   &cwi_format_stl,          &cwi_format_ply,
+    &cwi_format_obj,    &cwi_format_off,          &cwi_format_3mf,
+    &cwi_format_vtp,    &cwi_format_gifti,        &cwi_format_freesurfer,
+    &cwi_format_drc,    &cwi_format_neuroglancer,
 };
 enum { DRIVER_COUNT = sizeof drivers / sizeof *drivers };
 

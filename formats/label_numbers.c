@@ -27,7 +27,9 @@ static cw_status fail_voxel(const cw_volume *v, const char *at, const size_t pla
         (v->slope != 0 ? v->slope : 1) * cwi_voxel_at(v->type, at) + v->intercept, why);
 }
 
-static const char no_whole[] = "labels are whole numbers; desc->round_labels takes the nearest";
+static const char no_whole[] =
+    "labels are whole numbers; desc->round_labels takes the nearest; "
+    "cw_extract_label_scores() is for probabilities";
 
 /* --- volumes ----------------------------------------------------------------------------- */
 

@@ -268,6 +268,16 @@ typedef struct verdict_list {
     size_t count;
 } verdict_list;
 
+/* Returns true if a verdict of a solid is worse than one of another under the same name. Numbers are
+ * counts and areas of faults, but for two angles, which are better if they are wide. */
+static bool is_worse(const cw_verdict *v, const cw_verdict *than)
+{
+    const bool is_angle = strcmp(v->name, "shapes") == 0 || strcmp(v->name, "stability") == 0;
+    if (v->grade != than->grade)
+        return v->grade < than->grade;
+    return is_angle ? v->number < than->number : v->number > than->number;
+}
+
 static void join_verdict(verdict_list *list, const cw_verdict *v, const cli_part_check *solid)
 {
     joined *j = NULL;
@@ -280,8 +290,7 @@ static void join_verdict(verdict_list *list, const cw_verdict *v, const cli_part
     if (!j)
         return;
     j->differs = j->differs || strcmp(j->worst.text, v->text) != 0;
-    if (v->grade < j->worst.grade ||
-        (v->grade == j->worst.grade && v->number > j->worst.number)) {
+    if (is_worse(v, &j->worst)) {
         j->as_bad = v->grade == j->worst.grade ? j->as_bad + 1 : 0;
         j->worst = *v;
         j->of = solid;

@@ -19,7 +19,7 @@ typedef struct cli_extract_args {
     cli_input input;
     cli_compress compress;
     const char *output, *name, *format, *json, *pvd;
-    const char *labels, *names, *table;
+    const char *labels, *names, *table, *probabilities;
     cli_length smooth_labels;
     bool require_labels, shared_faces, per_label;
     cli_numbers iso;

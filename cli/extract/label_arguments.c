@@ -41,9 +41,16 @@ cw_status cli_check_label_args(const cli_extract_args *args, cw_error *err)
 {
     if (!args->output)
         return cwi_fail(err, CW_ERR_ARGUMENT, "extract needs an output: -o FILE");
-    if (args->common.input_count > 1)
-        return cwi_fail(err, CW_ERR_ARGUMENT, "--labels takes one volume; there are %zu",
-                        args->common.input_count);
+    cw_label_scores scores;
+    if (args->common.input_count > 1 && !args->probabilities)
+        return cwi_fail(
+            err, CW_ERR_ARGUMENT,
+            "--labels takes one volume; there are %zu. With --probabilities each is the "
+            "field of a label",
+            args->common.input_count);
+    if (args->probabilities &&
+        cli_parse_probabilities(args->probabilities, &scores, err) != CW_OK)
+        return CW_ERR_ARGUMENT;
     cli_extract_args surface =
         *args; /* without the stages that clean voxels of labels instead */
     surface.least = (cli_amount){0};

@@ -28,6 +28,8 @@ static size_t make_provenance(const cli_label_run *r, char smoothing[48], char s
         snprintf(smoothing, 48, "off");
     lines[0] = (cw_provenance){"labels", r->args->labels};
     lines[1] = (cw_provenance){"smoothing", smoothing};
+    if (r->args->probabilities)
+        lines[1] = (cw_provenance){"probabilities", r->args->probabilities};
     if (r->error_mm > 0)
         snprintf(simplified, 64, "to %.9g mm%s", r->error_mm, how);
     else
@@ -152,7 +154,11 @@ static const cli_label_item *find_worst(const cli_label_run *r)
 /* Describes smoothing and simplification for the line of a file. */
 static void print_steps(const cli_label_run *r, char text[STEPS_BYTES])
 {
-    int n = r->max_move > 0
+    int n = r->args->probabilities
+                ? snprintf(text, STEPS_BYTES, "; from %zu field%s%s", r->fields.scores.count,
+                           r->fields.scores.count == 1 ? "" : "s",
+                           r->max_move > 0 ? "" : ", in steps")
+            : r->max_move > 0
                 ? snprintf(text, STEPS_BYTES,
                            "; smoothed, by at most %.3g voxels along each axis", r->max_move)
                 : snprintf(text, STEPS_BYTES, "; not smoothed");

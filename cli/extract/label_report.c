@@ -44,8 +44,9 @@ cw_status cli_measure_label_volumes(cli_label_run *r, cw_error *err)
             cli_label_item *item = &r->items[next];
             if (item->layer != &r->layers[l] || item->label.value != s->labels[n].label)
                 continue; /* hidden */
-            item->volume_error =
-                r->args->open ? NAN : volumes[n] / (voxel * (double)item->voxels) - 1;
+            item->volume_error = r->args->open || r->args->probabilities
+                                     ? NAN
+                                     : volumes[n] / (voxel * (double)item->voxels) - 1;
             next++;
         }
         cwi_free(volumes);
@@ -216,12 +217,17 @@ void cli_put_label_params(cli_json *j, const void *p, const cli_made *made)
     const cli_label_run *r = p;
     (void)made;
     cli_json_text(j, "labels", r->args->labels);
+    if (r->args->probabilities) {
+        cli_json_text(j, "probabilities", r->args->probabilities);
+        cli_json_count(j, "fields", r->fields.scores.count);
+    }
     if (r->args->input.resample.given) {
         cli_resample resample = r->args->input.resample;
         resample.of_labels = true;
         cli_json_text(j, "resample", cli_resample_text(&resample));
     }
-    cli_json_number(j, "smooth_labels_voxels", r->max_move);
+    cli_json_number(j, r->args->probabilities ? "max_move_voxels" : "smooth_labels_voxels",
+                    r->max_move);
     if (r->error_mm > 0)
         cli_json_number(j, "simplify_error_mm", r->error_mm);
     else if (r->target)

@@ -29,7 +29,8 @@ static double find_error_mm(const cli_label_run *r)
 static cw_status expect_labels(const cli_label_run *r, cw_error *err)
 {
     cw_labels l;
-    if (!r->choice.all || r->args->common.force || r->names.table.count || r->volume.streams)
+    if (r->args->probabilities || !r->choice.all || r->args->common.force ||
+        r->names.table.count || r->volume.streams)
         return CW_OK;
     cw_status st = cw_volume_labels(&r->volume.view, &l, err);
     if (st != CW_OK || !l.scattered)
@@ -42,7 +43,7 @@ static cw_status expect_labels(const cli_label_run *r, cw_error *err)
         r->volume.path);
 }
 
-static cw_status read_label_map(cli_label_run *r, cw_error *err)
+static cw_status read_map(cli_label_run *r, cw_error *err)
 {
     const cli_extract_args *args = r->args;
     cli_input input = args->input;
@@ -51,14 +52,32 @@ static cw_status read_label_map(cli_label_run *r, cw_error *err)
     input.may_stream = !cli_cleans_labels(args) && !args->input.resample.given;
     input.resample.given = input.resample.of_labels = false; /* of labels it comes later */
     input.of_labels = true;
-    cli_report_begin(&r->report);
     cw_status st = cli_read_volume(args->common.inputs[0], &input, false, &r->volume, err);
+    if (st == CW_OK && r->volume.streams && args->stream == CLI_STREAM_AUTO)
+        cli_say("%s: voxels exceed --memory: read and extracted slice by slice",
+                r->volume.path);
+    return st;
+}
+
+/* Finds the names of labels: those of files, where each of several holds one. */
+static cw_status find_names(cli_label_run *r, cw_error *err)
+{
+    return r->fields.more_count > 0 && !r->args->names
+               ? cli_name_label_fields(&r->fields, &r->names.table, err)
+               : cli_find_label_names(r->args->names, &r->volume, &r->names, err);
+}
+
+static cw_status read_input(cli_label_run *r, cw_error *err)
+{
+    const cli_extract_args *args = r->args;
+    cli_report_begin(&r->report);
+    cw_status st = args->probabilities
+                       ? cli_read_label_fields(args->probabilities, &args->common, &args->input,
+                                               &r->volume, &r->fields, err)
+                       : read_map(r, err);
     if (st != CW_OK)
         return st;
     const cw_volume *v = &r->volume.view;
-    if (r->volume.streams && args->stream == CLI_STREAM_AUTO)
-        cli_say("%s: voxels exceed --memory: read and extracted slice by slice",
-                r->volume.path);
     r->report.input = &r->volume;
     cli_report_read(&r->report, &r->volume);
     if (v->cells || v->sparse)
@@ -69,7 +88,7 @@ static cw_status read_label_map(cli_label_run *r, cw_error *err)
     r->target = args->simplify.triangles;
     st = cli_extract_check_error(args, &r->volume, err);
     if (st == CW_OK)
-        st = cli_find_label_names(args->names, &r->volume, &r->names, err);
+        st = find_names(r, err);
     if (st == CW_OK)
         st = cli_choose_labels("--labels", args->labels, &r->names.table, &r->volume.ids,
                                &r->choice, err);
@@ -128,6 +147,8 @@ static cw_status extract_component(cli_label_run *r, uint32_t number,
     const cw_slice_visitor visitor = {extract_slices, &slices};
     cw_volume view;
     input.array.component.number = number;
+    if (r->args->probabilities)
+        return cw_extract_label_scores(&r->fields.scores, desc, &layer->surfaces, err);
     if (r->volume.streams)
         return cli_visit_slices(&r->volume, &input, &visitor, err);
     cw_status st = cw_volume_select(&r->volume.voxels, number, input.step, &view, err);
@@ -166,7 +187,7 @@ static cw_status extract_layer(cli_label_run *r, uint32_t number, cw_error *err)
     st = extract_component(r, number, &desc, layer, err);
     free(values);
     if (st != CW_OK)
-        return cwi_fail_in(err, st, r->volume.path);
+        return r->fields.more_count ? st : cwi_fail_in(err, st, r->volume.path);
     r->layer_count++;
     r->triangles += layer->surfaces.mesh.triangle_count;
     for (size_t n = 0; n < layer->surfaces.label_count; n++)
@@ -179,6 +200,8 @@ static cw_status extract_layers(cli_label_run *r, cw_error *err)
     size_t first, end;
     cw_status st = CW_OK;
     cli_label_layers(&r->volume, &r->args->input, &first, &end);
+    if (r->args->probabilities)
+        end = first + 1;
     r->layers = calloc(end - first, sizeof *r->layers);
     if (!r->layers)
         return cwi_fail_memory(err);
@@ -469,11 +492,13 @@ static cw_status run_labels(void *state, cw_error *err)
     if (st == CW_OK && r->args->stream != CLI_STREAM_NEVER)
         begin_overflow(r);
     if (st == CW_OK)
-        st = read_label_map(r, err);
+        st = read_input(r, err);
     if (st == CW_OK)
         st = extract_layers(r, err);
     if (st == CW_OK)
         cli_tell_cleaning(r);
+    if (st == CW_OK && r->choice.all)
+        cli_tell_absent_fields(r);
     if (st == CW_OK)
         st = tell_missing(r, err);
     if (st == CW_OK)
@@ -509,6 +534,7 @@ static void free_run(cli_label_run *r)
     cli_free_label_choice(&r->choice);
     cli_free_label_names(&r->names);
     cli_free_outputs(&r->files);
+    cli_free_label_fields(&r->fields);
     cli_free_volume(&r->volume);
 }
 

@@ -4,6 +4,7 @@
 
 #include "cli/extract/extract_run.h"
 #include "cli/inputs/label_choice.h"
+#include "cli/label_inputs/label_inputs.h"
 #include "core/mesh/mesh_store.h"
 
 #include <cubewright/labels.h>
@@ -32,8 +33,9 @@ typedef struct cli_label_item {
 
 typedef struct cli_label_run {
     const cli_extract_args *args;
-    cli_volume volume;
-    cw_volume grid; /* of the voxels that --resample made, without them; else zeroed */
+    cli_volume volume;       /* the input, or the first of several */
+    cli_label_fields fields; /* of --probabilities; else empty */
+    cw_volume grid;          /* of the voxels that --resample made, without them; else zeroed */
     cli_label_names names;
     cli_label_choice choice;
     double max_move; /* of smoothing, in voxels; 0: off */
@@ -77,6 +79,9 @@ CW_NODISCARD cw_status cli_resample_labels(cli_label_run *run, const cw_volume *
 enum { CLI_LABEL_LIST = 200 };
 void cli_list_label(const cli_label_run *run, uint32_t layer, uint32_t value,
                     char list[CLI_LABEL_LIST]);
+
+/* Names the fields that are the largest at no voxel, if all labels are to be extracted. */
+void cli_tell_absent_fields(const cli_label_run *run);
 
 /* Returns the voxels that are extracted: of the file, or those of --resample. */
 const cw_volume *cli_label_grid(const cli_label_run *run);

@@ -28,6 +28,27 @@ void cli_list_label(const cli_label_run *r, uint32_t layer, uint32_t value,
              used + strlen(text) <= room ? text : ", ...");
 }
 
+void cli_tell_absent_fields(const cli_label_run *r)
+{
+    const cw_label_scores *scores = &r->fields.scores;
+    const bool has_background = scores->rule == CW_BACKGROUND_FIELD;
+    const cw_label_surfaces *s = &r->layers[0].surfaces;
+    char list[CLI_LABEL_LIST] = "";
+    size_t absent = 0, next = 0;
+    for (size_t n = has_background; n < scores->count; n++) {
+        const uint32_t label = (uint32_t)(n + !has_background);
+        while (next < s->label_count && s->labels[next].label < label)
+            next++;
+        if (next < s->label_count && s->labels[next].label == label)
+            continue;
+        cli_list_label(r, 0, label, list);
+        absent++;
+    }
+    if (absent)
+        cli_say("%s: %zu field%s the largest at no voxel: label%s %s", r->volume.path, absent,
+                absent == 1 ? " is" : "s are", absent == 1 ? "" : "s", list);
+}
+
 /* --- other distances --------------------------------------------------------------------- */
 
 static int compare_label(const void *key, const void *count)

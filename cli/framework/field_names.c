@@ -42,6 +42,7 @@ static const struct {
     {"spacing_mm[0]", "the distance along x"},
     {"spacing_mm[1]", "the distance along y"},
     {"spacing_mm[2]", "the distance along z"},
+    {"cw_extract_label_scores()", "'extract --probabilities'"},
     {"cw_self_intersections()", "--deep"},
     {"cw_check_paint()", "--defects"},
     {"cw_mesh_drop_volumes()", "--min-volume"},

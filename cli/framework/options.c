@@ -211,6 +211,15 @@ typedef struct parser {
     cli_common *args;
 } parser;
 
+/* Returns true if a word is an option of the command: it is no value, then. */
+static bool is_option(const cli_command *command, const char *word)
+{
+    if (word[0] != '-' || !word[1])
+        return false;
+    return word[1] == '-' ? find_long(command, word + 2, strlen(word + 2)) != NULL
+                          : !word[2] && find_short(command, word[1]) != NULL;
+}
+
 /* value is what stood behind '=' or the letter; NULL: take the next word. */
 static cw_status take_option(parser *p, const cli_option *o, const char *value, bool off,
                              cw_error *err)
@@ -231,6 +240,9 @@ static cw_status take_option(parser *p, const cli_option *o, const char *value, 
     if (!value && p->next == p->count)
         return cwi_fail(err, CW_ERR_ARGUMENT, "--%s needs a value: %s", o->name,
                         cli_expected(o));
+    if (!value && is_option(p->command, p->words[p->next]))
+        return cwi_fail(err, CW_ERR_ARGUMENT, "--%s needs a value (%s), and %s is an option",
+                        o->name, o->value, p->words[p->next]);
     value = value ? value : p->words[p->next++];
     if (p->args->given_options)
         p->args->given_options[p->args->given_count++] =

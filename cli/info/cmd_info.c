@@ -26,7 +26,7 @@ typedef struct info_args {
     cli_input input;
     cli_numbers iso;
     size_t histogram;
-    const char *names, *within;
+    const char *names, *labels, *within;
     bool json, levels, deep;
 } info_args;
 
@@ -36,6 +36,9 @@ static const cli_option options[] = {
     {"iso", 'i', CLI_LEVELS, "V[,V...]",
      "Predict the mesh, file sizes, memory and time of 'extract' at isovalues; reads all voxels (none)",
      offsetof(info_args, iso)},
+    {"labels", 'l', CLI_TEXT, "all/LIST",
+     "Predict the meshes, memory and time of 'extract --labels'; reads all voxels (none)",
+     offsetof(info_args, labels)},
     {"names", 0, CLI_TEXT, "FILE",
      "Table of the labels' names and colours (in the volume, else in a file beside it)",
      offsetof(info_args, names), CLI_VALUES_FILE},
@@ -187,6 +190,25 @@ static cw_status predict_extract(const info_args *args, size_t program_bytes, cl
     return st == CW_OK && iso.count ? cli_predict(&desc, &f->volume, &f->predictions, err) : st;
 }
 
+/* Predicts the time and memory of `extract --labels`. It comes last, too. */
+static cw_status predict_labels(const info_args *args, size_t program_bytes, cli_info_facts *f,
+                                cw_error *err)
+{
+    const cli_label_predict_desc desc = {.list = args->labels,
+                                         .input = &args->input,
+                                         .table = &f->labels.names.table,
+                                         .program_bytes = program_bytes,
+                                         .read_seconds = f->read_seconds};
+    if (!args->labels)
+        return CW_OK;
+    if (!f->labels.is_label_map)
+        return cwi_fail(err, CW_ERR_ARGUMENT,
+                        "%s: --labels is for label maps, and neither the file nor its values "
+                        "say that this is one; --names FILE does, --iso V predicts a surface",
+                        f->volume.path);
+    return cli_predict_labels(&desc, &f->volume, &f->label_prediction, err);
+}
+
 static cw_status find_facts(const info_args *args, cli_info_facts *f, cw_error *err)
 {
     const int threads = (int)args->input.threads;
@@ -224,6 +246,8 @@ static cw_status find_facts(const info_args *args, cli_info_facts *f, cw_error *
     if (st != CW_OK)
         return st;
     st = predict_extract(args, program_bytes, f, err);
+    if (st == CW_OK)
+        st = predict_labels(args, program_bytes, f, err);
     cli_end_step("predict", &step);
     return st;
 }
@@ -312,10 +336,10 @@ static cw_status print_files(const info_args *args, char *const *files, size_t c
 {
     cli_json j = {.out = stdout};
     cw_error finding = {0};
-    if (args->histogram || args->levels || args->iso.count || args->within)
+    if (args->histogram || args->levels || args->iso.count || args->labels || args->within)
         return cwi_fail(
             err, CW_ERR_ARGUMENT,
-            "--histogram, --levels, --within and --iso need a single file; there are %zu",
+            "--histogram, --levels, --labels, --within and --iso need a single file; there are %zu",
             count);
     open_list(args, count, &j);
     cw_status st = list_files(args, files, count, &j, &finding, err);

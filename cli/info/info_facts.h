@@ -2,6 +2,7 @@
 #ifndef CLI_INFO_INFO_FACTS_H
 #define CLI_INFO_INFO_FACTS_H
 
+#include "cli/info/info_label_predict.h"
 #include "cli/info/info_labels.h"
 #include "cli/info/info_predict.h"
 #include "cli/info/info_scales.h"
@@ -30,6 +31,7 @@ typedef struct cli_info_facts {
     cli_scales scales;
     cli_within within;
     cli_predictions predictions;
+    cli_label_prediction label_prediction;
     double read_seconds; /* of the volume, or of the part that was read */
     cw_array *arrays;    /* of a file that has several; else NULL */
     size_t array_count;

@@ -270,6 +270,7 @@ void cli_json_info(const cli_info_facts *f, bool predicted)
     }
     cli_json_close(&j, ']');
     cli_json_predictions(&j, &f->predictions);
+    cli_json_label_prediction(&j, &f->label_prediction);
     cli_json_close(&j, '}');
 }
 
@@ -281,6 +282,7 @@ void cli_print_info(const cli_info_facts *f, size_t step, bool predicted)
     cli_print_within(&f->within);
     print_levels(f, predicted);
     cli_print_predictions(&f->predictions);
+    cli_print_label_prediction(&f->label_prediction);
 }
 
 /* --- series ------------------------------------------------------------------------------- */

@@ -26,6 +26,8 @@ enum {
  * their own: near it, so that sheets stay apart and close to where surface nets have them. */
 static const double NEAR_FRACTION = 0.5;
 
+static const cwi_label_smoother averages = {cwi_labels_smooth, NULL};
+
 /* Vertices stay at least this far inside of their cubes, in voxels. */
 #define MARGIN 1e-3
 
@@ -164,15 +166,14 @@ static cw_status number_vertices(const cwi_label_job *j, size_t chunks, cw_error
     return CW_OK;
 }
 
-/* Estimates the bytes of all arrays that grow with vertices and triangles: of the mesh and, with smoothing,
- * those in label_net.h, label_moves.h and label_crossings.h, with two corners of polygons for a triangle,
- * and few vertices on curves. */
+/* Estimates the bytes of all arrays that are there at one time, with directions in several patches for a
+ * third of the vertices. */
 static size_t estimate_bytes(const cw_mesh *mesh, bool is_smooth)
 {
-    enum { VERTEX = 12, TRIANGLE = 12, SMOOTH_VERTEX = 64, SMOOTH_TRIANGLE = 14 };
-    const size_t vertex = VERTEX + (is_smooth ? SMOOTH_VERTEX : 0),
-                 triangle = TRIANGLE + (is_smooth ? SMOOTH_TRIANGLE : 0);
-    return vertex * mesh->vertex_count + triangle * mesh->triangle_count;
+    enum { PLACE = 12, CORNERS = 12, SMOOTHED_VERTEX = 88, SMOOTHED_TRIANGLE = 29 };
+    return is_smooth
+               ? SMOOTHED_VERTEX * mesh->vertex_count + SMOOTHED_TRIANGLE * mesh->triangle_count
+               : PLACE * mesh->vertex_count + CORNERS * mesh->triangle_count;
 }
 
 static cw_status ensure_capacity(cwi_label_job *j, const cw_labels_desc *desc, cw_error *err)
@@ -211,6 +212,22 @@ static cw_status ensure_capacity(cwi_label_job *j, const cw_labels_desc *desc, c
     cwi_affine_apply(v->affine[0], middle, mesh->origin);
     memcpy(mesh->affine, v->affine, sizeof mesh->affine);
     return CW_OK;
+}
+
+/* Fills in the prediction. */
+static void predict_job(const cwi_label_job *j, const cw_labels_desc *desc)
+{
+    const cw_label_surfaces *out = j->out;
+    cw_label_prediction *p = j->prediction;
+    *p = (cw_label_prediction){.labels = out->label_count,
+                               .patches = out->patch_count,
+                               .vertices = out->mesh.vertex_count,
+                               .triangles = out->mesh.triangle_count};
+    for (size_t n = 0; n < out->patch_count; n++) {
+        const cw_label_patch *patch = &out->patches[n];
+        p->own_triangles += (patch->labels[1] == out->background ? 1 : 2) * patch->count;
+    }
+    p->bytes = estimate_bytes(&out->mesh, !desc->no_smoothing);
 }
 
 /* Goes through chunks whose slices are in memory. */
@@ -271,11 +288,11 @@ static cw_status place_all(cwi_label_job *j, const cw_labels_desc *desc, cw_erro
 
 /* Smooths all vertices, gives labels their volumes, and puts vertices back where triangles cross. */
 static cw_status smooth_all(cwi_label_job *j, const cw_labels_desc *desc,
-                            cwi_label_smoother *smooth, cw_error *err)
+                            const cwi_label_smoother *smooth, cw_error *err)
 {
     cw_mesh *mesh = &j->out->mesh;
     const size_t *dim = j->layers.volume->dim;
-    const bool keeps_volumes = smooth == cwi_labels_smooth && !desc->leave_open;
+    const bool keeps_volumes = smooth->move == cwi_labels_smooth && !desc->leave_open;
     cwi_label_pressures pressures = {.moves = {.net = &j->net,
                                                .surfaces = j->out,
                                                .originals = j->originals,
@@ -288,16 +305,20 @@ static cw_status smooth_all(cwi_label_job *j, const cw_labels_desc *desc,
                                      .context = j};
     cwi_copy_large(j->originals, mesh->positions,
                    3 * mesh->vertex_count * sizeof *j->originals);
-    cw_status st = cwi_label_net_finish(&j->net, mesh) ? CW_OK : cwi_fail_memory(err);
+    pressures.moves.places = mesh->positions;
+    cw_status st = cwi_label_net_finish(&j->net, mesh) &&
+                           (!keeps_volumes || cwi_label_pressures_init(&pressures))
+                       ? CW_OK
+                       : cwi_fail_memory(err);
     if (st == CW_OK)
-        st = smooth(&j->net, j->originals, j->places, j->out, desc, dim, err);
-    float *spare = j->places;
-    j->places = pressures.moves.places = mesh->positions;
-    mesh->positions = spare;
+        st = smooth->move(keeps_volumes ? &pressures : smooth->context, &j->net, j->originals,
+                          j->places, j->out, desc, dim, err);
+    cwi_free(j->net.neighbours);
+    j->net.neighbours = NULL;
+    mesh->positions = j->places;
+    j->places = pressures.moves.places;
     if (st == CW_OK && keeps_volumes)
-        st = cwi_label_pressures_init(&pressures)
-                 ? cwi_label_pressures_keep_first(&pressures, desc, err)
-                 : cwi_fail_memory(err);
+        st = cwi_label_pressures_keep_first(&pressures, desc, err);
     if (st == CW_OK)
         st = place_all(j, desc, err);
     if (st == CW_OK)
@@ -308,8 +329,23 @@ static cw_status smooth_all(cwi_label_job *j, const cw_labels_desc *desc,
     return st;
 }
 
+/* Makes the surfaces that the first pass counted. */
+static cw_status make_surfaces(cwi_label_job *j, size_t chunks, const cw_labels_desc *desc,
+                               const cwi_label_smoother *smooth, cw_error *err)
+{
+    cw_status st = ensure_capacity(j, desc, err);
+    j->is_writing = true;
+    if (st == CW_OK)
+        st = run_pass(j, chunks, desc, err);
+    if (j->window)
+        cwi_label_window_close(j->window);
+    if (st == CW_OK)
+        st = j->originals ? smooth_all(j, desc, smooth, err) : place_all(j, desc, err);
+    return st;
+}
+
 static cw_status run_job(cwi_label_job *j, const cw_labels_desc *desc,
-                         cwi_label_smoother *smooth, cw_error *err)
+                         const cwi_label_smoother *smooth, cw_error *err)
 {
     const size_t layers = j->layers.count - 1,
                  chunks = (layers + CWI_LABEL_CHUNK - 1) / CWI_LABEL_CHUNK;
@@ -323,15 +359,10 @@ static cw_status run_job(cwi_label_job *j, const cw_labels_desc *desc,
         st = list_patches(j, chunks, err);
     if (st == CW_OK)
         st = number_vertices(j, chunks, err);
-    if (st == CW_OK)
-        st = ensure_capacity(j, desc, err);
-    j->is_writing = true;
-    if (st == CW_OK)
-        st = run_pass(j, chunks, desc, err);
-    if (j->window)
-        cwi_label_window_close(j->window);
-    if (st == CW_OK)
-        st = j->originals ? smooth_all(j, desc, smooth, err) : place_all(j, desc, err);
+    if (st == CW_OK && j->prediction)
+        predict_job(j, desc);
+    else if (st == CW_OK)
+        st = make_surfaces(j, chunks, desc, smooth, err);
     cwi_label_net_free(&j->net);
     cwi_free(j->originals);
     cwi_free(j->places);
@@ -410,10 +441,12 @@ static double resolve_max_move(const cw_volume *v, double max_move)
     return fmax(0, (max_move > 0 ? max_move : 0.5) - margin);
 }
 
-/* Extracts the labels of a resolved volume: of its voxels or, if there is a window, of slices. */
+/* Extracts the labels of a resolved volume: of its voxels or, if there is a window, of slices.
+ * prediction: NULL, or filled in; then surfaces are not made */
 static cw_status extract_resolved(const cw_volume *v, cwi_label_window *window,
-                                  const cw_labels_desc *desc, cwi_label_smoother *smooth,
-                                  cw_label_surfaces *surfaces, cw_error *err)
+                                  const cw_labels_desc *desc, const cwi_label_smoother *smooth,
+                                  cw_label_prediction *prediction, cw_label_surfaces *surfaces,
+                                  cw_error *err)
 {
     cw_status st = CW_OK;
     if (!(desc->max_move >= 0 && desc->max_move <= 0.5))
@@ -428,6 +461,7 @@ static cw_status extract_resolved(const cw_volume *v, cwi_label_window *window,
     cwi_label_job *j = cwi_alloc_zeroed(1, sizeof *j);
     if (requested && j) {
         j->out = surfaces;
+        j->prediction = prediction;
         surfaces->background = desc->background;
         j->window = window;
         prepare_job(j, v, desc, requested);
@@ -436,14 +470,16 @@ static cw_status extract_resolved(const cw_volume *v, cwi_label_window *window,
         st = cwi_fail_memory(err);
     cwi_free(j);
     cwi_free(requested);
-    if (st != CW_OK)
+    if (st != CW_OK || prediction)
         cw_label_surfaces_free(surfaces);
     return st;
 }
 
-cw_status cwi_extract_labels_with(const cw_volume *volume, const cw_labels_desc *desc,
-                                  cwi_label_smoother *smooth, cw_label_surfaces *surfaces,
-                                  cw_error *err)
+/* Extracts or predicts the labels of a volume. */
+static cw_status extract_volume(const cw_volume *volume, const cw_labels_desc *desc,
+                                const cwi_label_smoother *smooth,
+                                cw_label_prediction *prediction, cw_label_surfaces *surfaces,
+                                cw_error *err)
 {
     const cw_labels_desc none = {0};
     cw_volume v;
@@ -451,23 +487,39 @@ cw_status cwi_extract_labels_with(const cw_volume *volume, const cw_labels_desc 
     cw_status st = cw_volume_resolve(volume, &v, err);
     if (st == CW_OK)
         st = cwi_volume_expect_dense(&v, "extracting labels", err);
-    return st == CW_OK ? extract_resolved(&v, NULL, desc ? desc : &none, smooth, surfaces, err)
+    return st == CW_OK ? extract_resolved(&v, NULL, desc ? desc : &none, smooth, prediction,
+                                          surfaces, err)
                        : st;
 }
 
-cw_status cwi_extract_labels_windowed(const cw_slice_source *source, size_t chunks,
-                                      const cw_labels_desc *desc, cw_label_surfaces *surfaces,
-                                      cw_error *err)
+/* Extracts or predicts the labels of a source. */
+static cw_status extract_source(const cw_slice_source *source, size_t chunks,
+                                const cw_labels_desc *desc, cw_label_prediction *prediction,
+                                cw_label_surfaces *surfaces, cw_error *err)
 {
     const cw_labels_desc none = {0};
     cwi_label_window w;
     memset(surfaces, 0, sizeof *surfaces);
     cw_status st = cwi_label_window_open(&w, source, chunks, err);
     if (st == CW_OK)
-        st = extract_resolved(&w.whole, &w, desc ? desc : &none, cwi_labels_smooth, surfaces,
-                              err);
+        st = extract_resolved(&w.whole, &w, desc ? desc : &none, &averages, prediction,
+                              surfaces, err);
     cwi_label_window_close(&w);
     return st;
+}
+
+cw_status cwi_extract_labels_with(const cw_volume *volume, const cw_labels_desc *desc,
+                                  const cwi_label_smoother *smooth, cw_label_surfaces *surfaces,
+                                  cw_error *err)
+{
+    return extract_volume(volume, desc, smooth, NULL, surfaces, err);
+}
+
+cw_status cwi_extract_labels_windowed(const cw_slice_source *source, size_t chunks,
+                                      const cw_labels_desc *desc, cw_label_surfaces *surfaces,
+                                      cw_error *err)
+{
+    return extract_source(source, chunks, desc, NULL, surfaces, err);
 }
 
 cw_status cw_extract_labels_stream(const cw_slice_source *source, const cw_labels_desc *desc,
@@ -483,5 +535,24 @@ cw_status cw_extract_labels(const cw_volume *volume, const cw_labels_desc *desc,
 {
     CWI_REQUIRE(err, volume, surfaces);
     CWI_REQUIRE_VERSION(err, desc, 0);
-    return cwi_extract_labels_with(volume, desc, cwi_labels_smooth, surfaces, err);
+    return cwi_extract_labels_with(volume, desc, &averages, surfaces, err);
+}
+
+cw_status cw_extract_labels_predict(const cw_volume *volume, const cw_labels_desc *desc,
+                                    cw_label_prediction *prediction, cw_error *err)
+{
+    cw_label_surfaces none;
+    CWI_REQUIRE(err, volume, prediction);
+    CWI_REQUIRE_VERSION(err, desc, 0);
+    return extract_volume(volume, desc, NULL, prediction, &none, err);
+}
+
+cw_status cw_extract_labels_stream_predict(const cw_slice_source *source,
+                                           const cw_labels_desc *desc,
+                                           cw_label_prediction *prediction, cw_error *err)
+{
+    cw_label_surfaces none;
+    CWI_REQUIRE(err, source, prediction);
+    CWI_REQUIRE_VERSION(err, desc, 0);
+    return extract_source(source, 0, desc, prediction, &none, err);
 }

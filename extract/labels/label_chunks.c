@@ -336,7 +336,7 @@ static void take_vertices(const scan *s, size_t x, size_t y, size_t k)
     if (!s->job->net.kinds)
         return;
     for (size_t v = 0; v < cwi_label_cube_vertices(shape) && shape != CWI_CUBE_SIMPLE; v++)
-        s->job->net.kinds[number + v] = CWI_NET_FIXED;
+        s->job->net.kinds[number + v] = CWI_NET_FIXED | CWI_NET_BACK;
     const uint32_t outside = find_outside(s, n, k, beyond);
     load_corners(s, x, y, corners);
     if (x > 0)

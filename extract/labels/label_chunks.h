@@ -36,6 +36,7 @@ typedef struct cwi_label_job {
     float *originals; /* places before smoothing; NULL without smoothing */
     float *places;    /* those after it, counted in voxels; at first spare */
     cw_label_surfaces *out;
+    cw_label_prediction *prediction; /* filled in by the first pass; then nothing is made */
     cwi_label_chunk *chunks;
     size_t first_chunk; /* of those whose slices are in memory */
     bool is_writing;    /* the second pass */

@@ -3,19 +3,25 @@
  * A vertex stays strictly inside of its cube, so a polygon stays strictly inside of the box of the
  * cubes around its edge, and only polygons with a cube in common can meet.
  *
- * Most need no test. Take an edge from voxel p to voxel q, and a polygon around it with one vertex
- * in each of its four cubes. The segment between vertices of two cubes passes through the face
- * between them, in a point f. In each of the two cubes, the triangle p, q, f and the cube's vertex
- * span a tetrahedron. The eight tetrahedra around the edge are its envelope. The triangles p, q, f
- * of different edges lie side by side on the faces of a cube, and all tetrahedra in a cube have
- * their apex in its vertex. So envelopes have at most faces in common [JuUdeshi2006].
+ * Most need no test. Take an edge from voxel p to voxel q, and the polygon around it, with a vertex in
+ * each of the cells around the edge: cubes or, in cubes with several vertices, prisms or tetrahedra. The
+ * segment between vertices of two cells passes through the face between them, in a point f. In each of
+ * the two cells, the triangle p, q, f and the cell's vertex span a tetrahedron. Those around the edge
+ * are its envelope. The triangles p, q, f of different edges lie side by side on the faces of a cell, and
+ * all tetrahedra in a cell have their apex in its vertex. So envelopes have at most faces in common
+ * [JuUdeshi2006].
  *
- * The polygon is two triangles. If p is strictly below both of their planes and q strictly above
- * both, the edge passes through one of them, and their common side through the triangle that p and
- * q span with the fourth vertex. Then the polygon is cut into triangles that each lie in a
- * tetrahedron of the envelope, and touch its surface in the sides of the polygon alone. Such
- * polygons are sound: two of them meet in common sides and vertices only. Nearly all others are sound
- * if they are cut along their other diagonal, and so they are; of two sound ones the shorter. */
+ * A cell is convex, so segments pass through the square between two cubes. If that is two faces, as one
+ * of the cubes has several vertices, they may miss: this is tested.
+ *
+ * If p is strictly below the planes of all triangles of the polygon and q strictly above them, the
+ * polygon is the graph of a function, seen along the edge. Cut it by the half plane from the edge through
+ * one of its points. From its boundary, which is in the envelope, the cut runs towards the point in which
+ * the plane of its first triangle meets the edge; where it enters the next triangle it is on the way
+ * there, in the envelope, and so on. Then the polygon lies in its envelope, and touches the envelope's
+ * surface in its own sides alone. Such polygons are sound: two of them meet in common sides and vertices
+ * only. Nearly all others of four corners are sound if they are cut along their other diagonal, and so
+ * they are; of two sound ones the shorter. */
 #include "extract/labels/label_crossings.h"
 
 #include "extract/labels/label_planes.h"
@@ -55,23 +61,43 @@ static int list_corners(const cwi_label_crossings *c, size_t polygon,
 /* Returns true if a vertex is where it was before smoothing. */
 static bool is_back(const cwi_label_crossings *c, uint32_t vertex)
 {
-    return (c->net->kinds[vertex] & (CWI_NET_FIXED | CWI_NET_BACK)) != 0;
+    return (c->net->kinds[vertex] & CWI_NET_BACK) != 0;
 }
 
-/* Finds the ends of the edge around which a polygon of four cubes lies, along an axis. */
-static void find_edge(const cwi_label_crossings *c, const uint32_t v[3], int axis, double p[3],
-                      double q[3])
+/* A polygon, and where it lies in the grid. */
+typedef struct sector {
+    int count; /* of corners */
+    uint32_t corners[CWI_POLYGON_CORNERS];
+    double points[CWI_POLYGON_CORNERS][3];
+    double cubes[CWI_POLYGON_CORNERS][3]; /* of corners: the lowest voxel */
+    double p[3], q[3];                    /* ends of the edge */
+} sector;
+
+/* Finds the ends of the edge around which a polygon lies. Its cubes are beside it along the axes
+ * along which it does not run. */
+static void find_edge(const cwi_label_crossings *c, int edge, sector *s)
 {
     double low[3], high[3];
     for (int a = 0; a < 3; a++) {
-        const float x = c->originals[3 * (size_t)v[0] + (size_t)a];
-        const float y = c->originals[3 * (size_t)v[1] + (size_t)a];
-        const float z = c->originals[3 * (size_t)v[2] + (size_t)a];
-        low[a] = high[a] = (double)(x > y ? (x > z ? x : z) : (y > z ? y : z)) - 0.5;
+        low[a] = s->cubes[0][a];
+        for (int n = 1; n < s->count; n++)
+            low[a] = fmax(low[a], s->cubes[n][a]);
+        high[a] = low[a] + (edge >> a & 1);
     }
-    high[axis] += 1;
-    c->to_point(c->context, low, p);
-    c->to_point(c->context, high, q);
+    c->to_point(c->context, low, s->p);
+    c->to_point(c->context, high, s->q);
+}
+
+static void load_sector(const cwi_label_crossings *c, size_t polygon, sector *s)
+{
+    s->count = list_corners(c, polygon, s->corners);
+    for (int n = 0; n < s->count; n++)
+        for (size_t a = 0; a < 3; a++) {
+            const size_t at = 3 * (size_t)s->corners[n] + a;
+            s->points[n][a] = (double)c->mesh->positions[at];
+            s->cubes[n][a] = floor((double)c->originals[at]);
+        }
+    find_edge(c, c->net->polygons[polygon], s);
 }
 
 /* Returns the side of a triangle on which p is, if q is on the other side: 1 or -1; 0 if not. */
@@ -89,12 +115,68 @@ static int find_side(const double x[3], const double y[3], const double z[3], co
     return hp < -clearance && hq > clearance ? -1 : hp > clearance && hq < -clearance;
 }
 
-/* Returns true if a polygon of four corners is sound, as above, cut from one corner to the one across. */
-static bool is_sound_from(double x[4][3], int first, const double p[3], const double q[3])
+/* Returns six times the volume of a tetrahedron: its sign tells on which side of the line from a to b
+ * the line from c to d passes. */
+static double find_passage(const double a[3], const double b[3], const double c[3],
+                           const double d[3])
 {
-    const double *a = x[first], *b = x[first + 1], *c = x[first + 2], *d = x[(first + 3) % 4];
-    const int side = find_side(a, b, c, p, q);
-    return side && find_side(a, c, d, p, q) == side;
+    double ab[3], ac[3], ad[3], normal[3];
+    cwi_sub(b, a, ab);
+    cwi_sub(c, a, ac);
+    cwi_sub(d, a, ad);
+    cwi_cross(ab, ac, normal);
+    return cwi_dot(normal, ad);
+}
+
+/* Returns true if the segment from a vertex that shares its cube to one of a cube beside passes through
+ * the half of the face on its side of the diagonal. */
+static bool passes_half(const cwi_label_crossings *c, const sector *s, int shared, int beside)
+{
+    double low[3], high[3], ends[2][3], at[3], first[3], mirrored[3], across[3];
+    for (int a = 0; a < 3; a++) {
+        const double step = s->cubes[beside][a] - s->cubes[shared][a];
+        at[a] = (double)c->originals[3 * (size_t)s->corners[shared] + (size_t)a];
+        low[a] = fmax(s->cubes[beside][a], s->cubes[shared][a]);
+        high[a] = low[a] + (step == 0);
+        mirrored[a] = step == 0 ? at[a] : 2 * low[a] - at[a];
+    }
+    c->to_point(c->context, at, first);
+    c->to_point(c->context, low, ends[0]);
+    c->to_point(c->context, high, ends[1]);
+    c->to_point(c->context, mirrored, across);
+    const double here = find_passage(ends[0], ends[1], s->points[shared], s->points[beside]),
+                 straight = find_passage(ends[0], ends[1], first, across);
+    return straight > 0 ? here > MIN_CLEARANCE * straight : here < MIN_CLEARANCE * straight;
+}
+
+/* Returns true if the segments between a polygon's corners pass through the faces between their
+ * tetrahedra, prisms or cubes. */
+static bool passes_faces(const cwi_label_crossings *c, const sector *s)
+{
+    for (int n = 0; n < s->count; n++)
+        for (int turns = 0; turns < 2; turns++) {
+            const int m = (n + 1) % s->count, from = turns ? m : n, to = turns ? n : m;
+            if (c->net->kinds[s->corners[from]] & CWI_NET_FIXED &&
+                memcmp(s->cubes[from], s->cubes[to], sizeof s->cubes[to]) != 0 &&
+                !passes_half(c, s, from, to))
+                return false;
+        }
+    return true;
+}
+
+/* Returns true if the ends of the edge are on both sides of all triangles of a polygon, cut from a
+ * corner to the others. */
+static bool is_parted(const sector *s, int first)
+{
+    int side = 0;
+    for (int n = 1; n + 1 < s->count; n++) {
+        const int this_side = find_side(s->points[first], s->points[(first + n) % s->count],
+                                        s->points[(first + n + 1) % s->count], s->p, s->q);
+        if (!this_side || (side && this_side != side))
+            return false;
+        side = this_side;
+    }
+    return true;
 }
 
 /* Cuts a polygon of four corners along its other diagonal. */
@@ -107,31 +189,23 @@ static void turn_diagonal(const cwi_label_crossings *c, size_t polygon, const ui
     memcpy(t, cut[flips], sizeof cut[flips]);
 }
 
-/* Returns true if a polygon is sound, as above. With may_turn it is cut along its shorter diagonal, or
- * along the longer one if it is sound only so. */
+/* Returns true if a polygon is sound, as above. With may_turn one of four corners is cut along its
+ * shorter diagonal, or along the longer one if it is sound only so. */
 static bool is_sound(const cwi_label_crossings *c, size_t polygon, bool may_turn)
 {
-    const int edge = c->net->polygons[polygon];
-    uint32_t v[CWI_POLYGON_CORNERS];
-    double p[3], q[3], x[4][3];
-    if ((edge != 1 && edge != 2 && edge != 4) || list_corners(c, polygon, v) != 4)
-        return false;
-    for (int n = 0; n < 4; n++)
-        if (c->net->kinds[v[n]] & CWI_NET_FIXED) /* others in its cube */
-            return false;
-    find_edge(c, v, edge >> 1, p, q);
-    for (int n = 0; n < 4; n++)
-        for (int a = 0; a < 3; a++)
-            x[n][a] = (double)c->mesh->positions[3 * (size_t)v[n] + (size_t)a];
-    const int first = may_turn && cwi_distance_sq(x[1], x[3]) < cwi_distance_sq(x[0], x[2]);
+    sector s;
+    load_sector(c, polygon, &s);
+    const bool turns = may_turn && s.count == 4;
+    const int first = turns && cwi_distance_sq(s.points[1], s.points[3]) <
+                                   cwi_distance_sq(s.points[0], s.points[2]);
     int from = first;
-    bool is_sound_so = is_sound_from(x, from, p, q);
-    if (!is_sound_so && may_turn) {
+    bool is_sound_so = passes_faces(c, &s);
+    if (is_sound_so && !is_parted(&s, from)) {
         from = 1 - first;
-        is_sound_so = is_sound_from(x, from, p, q);
+        is_sound_so = turns && is_parted(&s, from);
     }
     if (is_sound_so && from == 1)
-        turn_diagonal(c, polygon, v);
+        turn_diagonal(c, polygon, s.corners);
     return is_sound_so;
 }
 

@@ -140,10 +140,13 @@ size_t cwi_label_layer_slice(const cwi_label_layers *l, size_t k)
 cw_status cwi_label_fail_voxel(const cwi_label_layers *l, const size_t bad[3], cw_error *err)
 {
     const double value = cw_volume_value(l->volume, bad[0], bad[1], bad[2] - l->first_slice);
-    return cwi_fail(err, CW_ERR_ARGUMENT,
-                    "voxel %zu, %zu, %zu is %.10g: labels are whole numbers, 0 to 4294967295%s",
-                    bad[0], bad[1], bad[2], value,
-                    value != floor(value) ? "; desc->round_labels takes the nearest" : "");
+    return cwi_fail(
+        err, CW_ERR_ARGUMENT,
+        "voxel %zu, %zu, %zu is %.10g: labels are whole numbers, 0 to 4294967295%s", bad[0],
+        bad[1], bad[2], value,
+        value != floor(value)
+            ? "; desc->round_labels takes the nearest; cw_extract_label_scores() is for probabilities"
+            : "");
 }
 
 bool cwi_label_layer_count(const cwi_label_layers *l, const uint32_t *labels,

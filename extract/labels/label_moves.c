@@ -392,8 +392,7 @@ bool cwi_label_moves_init(cwi_label_moves *m)
         m->curve_count += is_on_curve(m, v);
         cwi_memory_trim_at(v);
     }
-    m->directions = cwi_renew_large(m->net->neighbours, vertices, sizeof *m->directions);
-    m->net->neighbours = NULL;
+    m->directions = cwi_alloc_large(vertices, sizeof *m->directions);
     m->patches = cwi_alloc_zeroed(f->patch_count, sizeof *m->patches);
     m->curve = cwi_alloc_array(m->curve_count, sizeof *m->curve);
     m->curve_firsts = cwi_alloc_array(m->curve_count + 1, sizeof *m->curve_firsts);

@@ -29,8 +29,7 @@ typedef struct cwi_patch_facts {
 
 /* Set the first block and zero the rest. */
 typedef struct cwi_label_moves {
-    cwi_label_net
-        *net; /* finished; its neighbours are no longer needed, and give their memory */
+    cwi_label_net *net;                /* finished */
     const cw_label_surfaces *surfaces; /* whose mesh may be elsewhere */
     const float *originals;            /* places before smoothing, counted in voxels */
     float *places;                     /* those now */

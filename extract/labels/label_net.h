@@ -12,8 +12,8 @@ extern "C" {
 
 /* Flags of a vertex's kind. */
 enum {
-    CWI_NET_FIXED = 0x40, /* in a cube with more than one vertex: it stays */
-    CWI_NET_BACK = 0x80   /* put back to where it was before smoothing */
+    CWI_NET_FIXED = 0x40, /* in a cube with more than one vertex: smoothing lets it stay */
+    CWI_NET_BACK = 0x80   /* where it was before smoothing: it stayed, or was put back */
 };
 
 /* Capacity for the corners of a polygon: 6 at most. */

@@ -10,7 +10,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { FULL_ROUNDS = 2, FIRST_ROUNDS = 4, SMALL = 64 /* voxels */, SOLVER_ROUNDS = 300 };
+enum { FULL_ROUNDS = 1, FIRST_ROUNDS = 4, SMALL = 64 /* voxels */, SOLVER_ROUNDS = 300 };
 
 /* The fraction of its volume that a label may lack before triangles that cross are looked for. */
 static const double MAX_FIRST_DEFICIT = 1e-3;
@@ -123,6 +123,29 @@ static void set_differences(cwi_label_pressures *p)
     }
 }
 
+/* Moves all vertices by the pressures that add the missing volumes, as far as bounds let them. */
+static cw_status press_once(cwi_label_pressures *p, const cw_labels_desc *desc, cw_error *err)
+{
+    find_weights(p, NULL);
+    solve_pressures(p);
+    find_weights(p, p->pressures);
+    solve_pressures(p);
+    set_differences(p);
+    return cwi_label_moves_apply(&p->moves, desc, err);
+}
+
+cw_status cwi_label_pressures_set(cwi_label_pressures *p, const cw_labels_desc *desc,
+                                  cw_error *err)
+{
+    for (size_t n = 0; n < p->moves.surfaces->patch_count; n++)
+        p->moves.patches[n].is_changed = true;
+    const cw_status st = cwi_label_moves_measure(&p->moves, desc, err);
+    if (st != CW_OK)
+        return st;
+    find_deficits(p, 0, true);
+    return press_once(p, desc, err);
+}
+
 cw_status cwi_label_pressures_keep(cwi_label_pressures *p, double max_deficit, int full_rounds,
                                    int rounds, bool *is_kept, const cw_labels_desc *desc,
                                    cw_error *err)
@@ -134,12 +157,7 @@ cw_status cwi_label_pressures_keep(cwi_label_pressures *p, double max_deficit, i
         *is_kept = is_done && round == 0;
         if (st != CW_OK || is_done || round == rounds)
             break;
-        find_weights(p, NULL);
-        solve_pressures(p);
-        find_weights(p, p->pressures);
-        solve_pressures(p);
-        set_differences(p);
-        st = cwi_label_moves_apply(&p->moves, desc, err);
+        st = press_once(p, desc, err);
     }
     return st;
 }
@@ -174,6 +192,8 @@ cw_status cwi_label_pressures_keep_first(cwi_label_pressures *p, const cw_labels
                                          cw_error *err)
 {
     bool is_kept;
+    for (size_t n = 0; n < p->moves.surfaces->patch_count; n++)
+        p->moves.patches[n].is_changed = true;
     return cwi_label_pressures_keep(p, MAX_FIRST_DEFICIT, FULL_ROUNDS, FIRST_ROUNDS, &is_kept,
                                     desc, err);
 }

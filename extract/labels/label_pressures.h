@@ -26,6 +26,11 @@ typedef struct cwi_label_pressures {
 CW_NODISCARD bool cwi_label_pressures_init(cwi_label_pressures *p);
 void cwi_label_pressures_free(cwi_label_pressures *p);
 
+/* Moves vertices between two rounds of smoothing, once: labels get most of the volume that they lack.
+ * Returns  CW_ERR_NO_MEMORY; CW_ERR_CANCELLED */
+CW_NODISCARD cw_status cwi_label_pressures_set(cwi_label_pressures *p,
+                                               const cw_labels_desc *desc, cw_error *err);
+
 /* Moves vertices, counted in voxels, until no label lacks more than a fraction of the volume of its
  * voxels: each interface along its normal, by the difference of its two labels' pressures. Labels
  * that lack less have no pressure. No vertex moves farther than the bound from its first place along

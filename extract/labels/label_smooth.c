@@ -2,16 +2,20 @@
  * each vertex [Gibson1998]. */
 #include "extract/labels/label_smooth.h"
 
+#include "extract/labels/label_pressures.h"
+
 #include "core/base/parallel.h"
 #include "core/base/status.h"
 
 #include <math.h>
 #include <string.h>
 
-enum { ROUND_PAIRS = 5, PART = 1 << 14 };
+/* After some pairs of rounds labels get their volumes: if they shrank on and on, more vertices would
+ * meet the bounds of their moves, and those that do not would make steps beside them. */
+enum { ROUND_PAIRS = 6, PAIRS_BETWEEN = 2, PART = 1 << 14 };
 
 /* The fraction of the way to the neighbours' mean in the first and the second round of a pair. The first
- * takes broad steps out, the second what changes from vertex to vertex. Five pairs smooth as much as 16
+ * takes broad steps out, the second what changes from vertex to vertex. Six pairs smooth as much as 19
  * rounds of a half. */
 static const float MEAN_WEIGHTS[2] = {1, 0.6f};
 
@@ -24,8 +28,9 @@ typedef struct averager {
     float bound;
     const cw_labels_desc *desc;
     const size_t *dim;
-    size_t count; /* of vertices */
-    float weight; /* of the neighbours' mean in this round */
+    size_t count;                   /* of vertices */
+    float weight;                   /* of the neighbours' mean in this round */
+    cwi_label_pressures *pressures; /* NULL: volumes are not kept */
     /* (count + CWI_SPARE_POSITIONS) x 3. The one behind the last is 0: it replaces missing
      * neighbours */
     float *from, *to;
@@ -111,6 +116,10 @@ static cw_status average_all(averager *s, cw_error *err)
     memset(s->to + 3 * s->count, 0, spare);
     cw_status st = run_parts(s, choose_part, err);
     for (int round = 0; round < 2 * ROUND_PAIRS && st == CW_OK; round++) {
+        if (s->pressures && round > 0 && round % (2 * PAIRS_BETWEEN) == 0)
+            st = cwi_label_pressures_set(s->pressures, s->desc, err);
+        if (st != CW_OK)
+            break;
         float *before = s->from;
         s->weight = MEAN_WEIGHTS[round % 2];
         st = run_parts(s, average_part, err);
@@ -120,9 +129,9 @@ static cw_status average_all(averager *s, cw_error *err)
     return st;
 }
 
-cw_status cwi_labels_smooth(cwi_label_net *net, const float *originals, float *spare,
-                            cw_label_surfaces *surfaces, const cw_labels_desc *desc,
-                            const size_t dim[3], cw_error *err)
+cw_status cwi_labels_smooth(void *context, cwi_label_net *net, const float *originals,
+                            float *spare, cw_label_surfaces *surfaces,
+                            const cw_labels_desc *desc, const size_t dim[3], cw_error *err)
 {
     averager s = {.net = net,
                   .originals = originals,
@@ -131,6 +140,7 @@ cw_status cwi_labels_smooth(cwi_label_net *net, const float *originals, float *s
                   .dim = dim,
                   .count = surfaces->mesh.vertex_count,
                   .from = surfaces->mesh.positions,
-                  .to = spare};
+                  .to = spare,
+                  .pressures = context};
     return average_all(&s, err);
 }

@@ -48,6 +48,20 @@ cw_status cwi_stream_open(cwi_stream *s, int fd, uint64_t offset, bool deflated,
     return cwi_fail_memory(err);
 }
 
+cw_status cwi_stream_open_bare(cwi_stream *s, int fd, uint64_t offset, uint32_t crc,
+                               cw_error *err)
+{
+    *s = (cwi_stream){
+        .fd = fd, .offset = offset, .end = UINT64_MAX, .is_bare = true, .expected_crc = crc};
+    cwi_zlib_use_memory(&s->z);
+    s->z.next_in = s->buffer = cwi_alloc_array(BUFFER_BYTES, 1);
+    s->deflated = s->buffer && inflateInit2(&s->z, -MAX_WBITS) == Z_OK;
+    if (s->deflated)
+        return CW_OK;
+    cwi_stream_close(s);
+    return cwi_fail_memory(err);
+}
+
 cw_status cwi_stream_open_bzip2(cwi_stream *s, int fd, uint64_t offset, cw_error *err)
 {
     *s = (cwi_stream){.fd = fd, .offset = offset, .end = UINT64_MAX};
@@ -213,7 +227,7 @@ static cw_status start_next_member(cwi_stream *s, cw_error *err)
     const size_t size = strlen(magic);
     size_t got;
     cw_status st = s->z.avail_in < size ? refill_input(s, &got, err) : CW_OK;
-    s->ended = s->z.avail_in < size || memcmp(s->z.next_in, magic, size) != 0;
+    s->ended = s->is_bare || s->z.avail_in < size || memcmp(s->z.next_in, magic, size) != 0;
     s->packed_end = s->offset - s->z.avail_in;
     if (st == CW_OK && !s->ended && !s->isal && !s->bzip2)
         inflateReset(&s->z);
@@ -252,6 +266,8 @@ static cw_status inflate_some(cwi_stream *s, unsigned char *to, size_t size, siz
                                : inflate(&s->z, Z_NO_FLUSH);
     *got = output - s->z.avail_out;
     s->given += *got;
+    if (s->is_bare)
+        s->crc = (uint32_t)crc32_z(s->crc, to, *got);
     if (code == Z_STREAM_END)
         return start_next_member(s, err);
     const bool stuck = *got == 0 && s->z.avail_in == input;
@@ -324,6 +340,9 @@ cw_status cwi_stream_finish(cwi_stream *s, cw_error *err)
         return cwi_fail(err, CW_ERR_FORMAT,
                         "the compressed data break off after %llu bytes, before their checksum",
                         (unsigned long long)s->given);
+    if (st == CW_OK && s->is_bare && s->ended && s->crc != s->expected_crc)
+        return cwi_fail(err, CW_ERR_FORMAT,
+                        "the compressed data are damaged: their checksum is another");
     return st == CW_OK && s->ended ? check_padding(s, err) : st;
 }
 

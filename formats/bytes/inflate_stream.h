@@ -17,6 +17,9 @@ typedef struct cwi_stream {
     uint64_t end;    /* place in the file where the stream ends at the latest */
     uint64_t given;  /* number of decoded bytes returned so far */
     bool deflated;
+    bool is_bare; /* the compressed data have neither header nor checksum */
+    uint32_t crc,
+        expected_crc;    /* of such data: so far, and of all, which is stated elsewhere */
     bool ended;          /* the compressed data have ended, complete or not */
     bool truncated;      /* ... because the file ended first */
     uint64_t packed_end; /* ... else where they end in the file */
@@ -40,6 +43,12 @@ void cwi_zlib_use_memory(z_stream *z);
  * Returns CW_ERR_NO_MEMORY. */
 CW_NODISCARD cw_status cwi_stream_open(cwi_stream *s, int fd, uint64_t offset, bool deflated,
                                        cw_error *err);
+
+/* Starts reading an entry of a zip archive: deflated data without header and checksum. End it at its
+ * last byte. crc: of all decoded bytes, which is checked at the end.
+ * Returns CW_ERR_NO_MEMORY. */
+CW_NODISCARD cw_status cwi_stream_open_bare(cwi_stream *s, int fd, uint64_t offset,
+                                            uint32_t crc, cw_error *err);
 
 /* Starts reading bzip2 data; several streams in a row are read as one.
  * Returns CW_ERR_NO_MEMORY, CW_ERR_UNSUPPORTED: libbz2 is not in this build. */

@@ -153,26 +153,51 @@ static bool same_name(const unsigned char *text, size_t length, const char *name
     return length == strlen(name) && strncasecmp((const char *)text, name, length) == 0;
 }
 
+/* Moves to the next record of the directory. Returns false where it does not fit in. length: of its name */
+static bool next_record(const cwi_unzip *z, const unsigned char **at,
+                        const unsigned char **record, size_t *length)
+{
+    const size_t left = (size_t)(z->directory + z->bytes - *at);
+    if (left < CENTRAL || read_number(*at, 4) != 0x02014b50)
+        return false;
+    *length = (size_t)read_number(*at + 28, 2);
+    const size_t rest =
+        *length + (size_t)read_number(*at + 30, 2) + (size_t)read_number(*at + 32, 2);
+    if (left - CENTRAL < rest)
+        return false;
+    *record = *at;
+    *at += CENTRAL + rest;
+    return true;
+}
+
 /* Finds the record of a name; NULL when there is none. *whole: all records fit into the
  * directory. */
 static const unsigned char *find_record(const cwi_unzip *z, const char *name, bool *whole)
 {
-    const unsigned char *at = z->directory, *end = at + z->bytes;
+    const unsigned char *at = z->directory, *record;
+    size_t length;
     *whole = true;
     for (size_t i = 0; i < z->count; i++) {
-        *whole = end - at >= CENTRAL && read_number(at, 4) == 0x02014b50;
-        const size_t length = *whole ? (size_t)read_number(at + 28, 2) : 0;
-        const size_t rest =
-            *whole ? length + (size_t)read_number(at + 30, 2) + (size_t)read_number(at + 32, 2)
-                   : 0;
-        *whole = *whole && (size_t)(end - at) - CENTRAL >= rest;
+        *whole = next_record(z, &at, &record, &length);
         if (!*whole)
             return NULL;
-        if (same_name(at + CENTRAL, length, name))
-            return at;
-        at += CENTRAL + rest;
+        if (same_name(record + CENTRAL, length, name))
+            return record;
     }
     return NULL;
+}
+
+bool cwi_unzip_next(const cwi_unzip *z, size_t *offset, char name[256])
+{
+    const unsigned char *at = z->directory + *offset, *record;
+    size_t length;
+    if (!next_record(z, &at, &record, &length))
+        return false;
+    length = length < 256 ? length : 0;
+    memcpy(name, record + CENTRAL, length);
+    name[length] = '\0';
+    *offset = (size_t)(at - z->directory);
+    return true;
 }
 
 bool cwi_unzip_has(const cwi_unzip *z, const char *name)

@@ -33,6 +33,10 @@ void cwi_unzip_close(cwi_unzip *z);
 CW_NODISCARD cw_status cwi_unzip_find(const cwi_unzip *z, const char *name,
                                       cwi_unzip_entry *entry, cw_error *err);
 
+/* Copies the name of the next entry, or nothing if it is too long. Returns false behind the last one.
+ * at  place in the directory; 0 at first */
+bool cwi_unzip_next(const cwi_unzip *z, size_t *at, char name[256]);
+
 bool cwi_unzip_has(const cwi_unzip *z, const char *name);
 
 /* A stream of the bytes of an entry. A zeroed one is closed. */

@@ -9,7 +9,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { MAGIC_BYTES = 6, MAX_HEADER = 1 << 16, MAX_AXES = 4, MAX_CHANNELS = 4 };
+enum { MAGIC_BYTES = 6, MAX_HEADER = CWI_NPY_HEADER, MAX_AXES = 4, MAX_CHANNELS = 4 };
 static const char magic[] = "\x93NUMPY";
 
 /* A header: the dictionary as text, and what its keys say. */
@@ -26,18 +26,11 @@ bool cwi_npy_sniff(const unsigned char *head, size_t size)
     return size > MAGIC_BYTES && memcmp(head, magic, MAGIC_BYTES) == 0;
 }
 
-static cw_status read_text(const cwi_input *in, npy *n, cw_error *err)
+/* Finds the dictionary at the start of a file, and moves it to the start of the text. */
+static cw_status find_text(npy *n, size_t got, cw_error *err)
 {
-    size_t got;
-    bool gzipped;
-    n->text = cwi_alloc_array(MAX_HEADER + 1, 1);
-    if (!n->text)
-        return cwi_fail_memory(err);
-    cw_status st = cwi_stream_head(in->fd, n->text, MAX_HEADER, &got, &gzipped, err);
-    if (st != CW_OK)
-        return st;
     const unsigned char *b = (const unsigned char *)n->text;
-    if (gzipped || got < 12 || !cwi_npy_sniff(b, got))
+    if (got < 12 || !cwi_npy_sniff(b, got))
         return cwi_fail(err, CW_ERR_FORMAT, "it does not begin with the magic of NumPy");
     const size_t start = b[6] == 1 ? 10 : 12;
     const size_t length =
@@ -167,18 +160,17 @@ static cw_status set_axes(const npy *n, cwi_source *src, cw_error *err)
         axes[a] = (cwi_axis){roles[from], n->size[from]};
     }
     if (n->axes == 4)
-        snprintf(src->note, sizeof src->note, "the %s axis is taken as %s",
-                 has_values ? "last" : "first",
-                 has_values ? "values of a voxel" : "steps of time");
+        cwi_source_note(src, "the %s axis is taken as %s", has_values ? "last" : "first",
+                        has_values ? "values of a voxel" : "steps of time");
     return cwi_source_set_axes(src, axes, n->axes, err);
 }
 
-cw_status cwi_npy_parse(const cwi_input *in, cwi_source *src, cw_error *err)
+cw_status cwi_npy_describe(char *head, size_t size, cwi_source *src, cw_error *err)
 {
-    npy n = {0};
+    npy n = {.text = head};
     src->size_field = "shape";
     src->frame_field = "shape";
-    cw_status st = read_text(in, &n, err);
+    cw_status st = find_text(&n, size, err);
     if (st == CW_OK)
         st = read_type(&n, src, err);
     if (st == CW_OK)
@@ -190,10 +182,23 @@ cw_status cwi_npy_parse(const cwi_input *in, cwi_source *src, cw_error *err)
     if (st == CW_OK) {
         src->shape.slope = 1;
         src->skip = n.voxels;
-        src->is_last = true;
         for (int a = 0; a < 3; a++)
             src->shape.affine[a][a] = 1;
     }
-    cwi_free(n.text);
+    return st;
+}
+
+cw_status cwi_npy_parse(const cwi_input *in, cwi_source *src, cw_error *err)
+{
+    size_t got;
+    bool gzipped;
+    char *head = cwi_alloc_array(CWI_NPY_HEADER + 1, 1);
+    if (!head)
+        return cwi_fail_memory(err);
+    cw_status st = cwi_stream_head(in->fd, head, CWI_NPY_HEADER, &got, &gzipped, err);
+    if (st == CW_OK)
+        st = cwi_npy_describe(head, gzipped ? 0 : got, src, err);
+    src->is_last = true;
+    cwi_free(head);
     return st;
 }

@@ -56,7 +56,8 @@ static cw_status skip_lines(const cwi_part_file *p, uint64_t lines, uint64_t *st
 /* Returns the bytes to skip after decoding. */
 static uint64_t decoded_skip(const cwi_source *src)
 {
-    const bool packed = src->encoding == CWI_DEFLATED || src->encoding == CWI_BZIP2;
+    const bool packed = src->encoding == CWI_DEFLATED || src->encoding == CWI_BARE ||
+                        src->encoding == CWI_BZIP2;
     return packed || src->base64 ? src->skip : 0;
 }
 
@@ -110,8 +111,9 @@ cw_status cwi_part_open_stream(const cwi_source *src, const cwi_part_file *p,
                                cwi_stream *stream, cwi_packed_blocks *blocks, cw_error *err)
 {
     cw_status st =
-        src->encoding == CWI_BZIP2
-            ? cwi_stream_open_bzip2(stream, p->fd, p->start, err)
+        src->encoding == CWI_BZIP2 ? cwi_stream_open_bzip2(stream, p->fd, p->start, err)
+        : src->encoding == CWI_BARE
+            ? cwi_stream_open_bare(stream, p->fd, p->start, src->crc, err)
             : cwi_stream_open(stream, p->fd, p->start, src->encoding == CWI_DEFLATED, err);
     if (st != CW_OK)
         return st;

@@ -11,6 +11,7 @@
 typedef enum cwi_encoding {
     CWI_RAW,
     CWI_DEFLATED, /* gzip or zlib, distinguished by content */
+    CWI_BARE,     /* deflated without header and checksum, as in zip archives */
     CWI_BZIP2,
     CWI_ASCII, /* decimal numbers with blanks between them */
     CWI_HEX,   /* two hexadecimal digits per byte; blanks between them are ignored */
@@ -54,6 +55,7 @@ typedef struct cwi_source {
     uint64_t span;   /* bytes of the file behind the offset, voxels among them; 0: all */
     uint64_t lines;  /* lines behind the offset to leave out */
     uint64_t skip;   /* decoded bytes in front of the first voxel */
+    uint32_t crc;    /* of CWI_BARE: of the decoded bytes */
     uint64_t packed; /* compressed bytes, as stated by "CompressedDataSize"; 0: unknown */
     bool at_end;     /* raw: the voxels are the last bytes of the file instead */
     bool is_last;    /* the file ends with the voxels; a note reports bytes behind them */

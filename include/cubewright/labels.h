@@ -64,7 +64,7 @@ typedef struct cw_label_surfaces {
  * surface nets, with a vertex in the middle of the cube. At the volume's border other cubes are two
  * prisms, with a vertex each.
  *
- * Smoothing moves vertices towards the mean of those in the cubes beside, ten times, and those
+ * Smoothing moves vertices towards the mean of those in the cubes beside, in 12 rounds, and those
  * on curves where three labels meet along the curves, each within max_move of where it was. Then
  * pressures, which move each interface along its normal by the difference of its labels'
  * pressures, preserve the volume of every label's voxels, except for open borders. Where
@@ -103,6 +103,111 @@ CW_NODISCARD CW_API cw_status cw_extract_labels_stream(const cw_slice_source *so
                                                        const cw_labels_desc *desc,
                                                        cw_label_surfaces *surfaces,
                                                        cw_error *err);
+
+/* Counts and costs of an extraction of labels. */
+typedef struct cw_label_prediction {
+    size_t labels;    /* that occur, but the background */
+    size_t patches;   /* interfaces of two labels */
+    size_t vertices;  /* of all interfaces */
+    size_t triangles; /* of all interfaces, each once */
+    size_t
+        own_triangles; /* of all labels' own meshes: a triangle between two labels is in both */
+    size_t bytes;      /* of the surfaces and the working memory together, about; without the
+                             voxels */
+} cw_label_prediction;
+
+/* Counts what cw_extract_labels() would make, without making it. Counts are exact, and
+ * desc->max_triangles is ignored.
+ *
+ * prediction  filled on success
+ * Returns     as cw_extract_labels()
+ * Cost        one pass over the voxels */
+CW_NODISCARD CW_API cw_status cw_extract_labels_predict(const cw_volume *volume,
+                                                        const cw_labels_desc *desc,
+                                                        cw_label_prediction *prediction,
+                                                        cw_error *err);
+
+/* Counts what cw_extract_labels_stream() would make, from slices that are read once.
+ *
+ * source      borrowed
+ * prediction  filled on success
+ * Returns     as cw_extract_labels_stream()
+ * Cost        as cw_extract_labels_stream(), without the surfaces */
+CW_NODISCARD CW_API cw_status cw_extract_labels_stream_predict(const cw_slice_source *source,
+                                                               const cw_labels_desc *desc,
+                                                               cw_label_prediction *prediction,
+                                                               cw_error *err);
+
+/* The rule for the background: how large a field of labels must be. */
+typedef enum cw_background_rule {
+    CW_BACKGROUND_VALUE, /* a value that a label's field must exceed: for fields that are made one by
+                            one, such as sigmoids, whose sum may be anything */
+    CW_BACKGROUND_FIELD, /* a field of its own, that of the label cw_labels_desc.background: for
+                            softmax outputs, whose first channel it is as a rule */
+    CW_BACKGROUND_REST, /* 1 minus the sum of all fields: for such outputs without that channel */
+    CW_BACKGROUND_RULE_COUNT
+} cw_background_rule;
+
+/* Fields of labels: at each voxel the label of the largest is there. They are probabilities, or any
+ * scores that can be compared. Zero-initialise the struct and set what you need. */
+typedef struct cw_label_scores {
+    uint32_t version; /* 0: the first version of this struct */
+    const cw_volume
+        *fields;  /* count of them, in one grid, of any types: the first component and step of
+                                each. Several components of a volume: cw_volume_select() */
+    size_t count; /* number of fields: 1 or more */
+    const uint32_t *labels;   /* count: the label of each; default: their numbers, from 0 with
+                                CW_BACKGROUND_FIELD, else from 1 */
+    const char *const *names; /* count, for messages; default: none */
+    cw_background_rule rule;  /* default: CW_BACKGROUND_VALUE */
+    double value;             /* with CW_BACKGROUND_VALUE and has_value; default: 0.5 */
+    bool has_value;           /* value is set */
+} cw_label_scores;
+
+/* Extracts the interfaces between the labels of fields, where neighbouring labels' fields are equal.
+ *
+ * The label of a voxel is that of the largest field, of equal ones that of the first; the background's
+ * value or rest is before all. Fields without a value at a voxel (NaN, no-data) are left out there, and
+ * without any it is background. This map has the interfaces of cw_extract_labels(), with all that
+ * is said there of closed, oriented manifolds and of caps at the border.
+ *
+ * Vertices then go to where the fields are. On edges of a cube whose ends have different labels, fields
+ * are linear, and their two labels' are equal in one point. From the mean of those points a vertex goes
+ * on to where the fields of all labels of its cube are equal, as trilinear functions there, by steps of
+ * Gauss and Newton. It stays within max_move of the cube's middle, and in its cube. In cubes of several
+ * vertices each stands in the mean of the points of its tetrahedra's edges. Where triangles would cross,
+ * vertices go back to their cubes' middles. Surfaces are not smoothed, and volumes are those of
+ * the fields, not of the voxels.
+ *
+ * fields    borrowed
+ * desc      as for cw_extract_labels(); labels that are not wanted are background, too.
+ *           no_smoothing leaves vertices in the middle of their cubes
+ * surfaces  filled on success, emptied on failure; free it with cw_label_surfaces_free(). The voxels of
+ *           labels are those of the largest field
+ * Returns   CW_ERR_ARGUMENT  no fields; grids that differ, naming two fields; a label twice, or that of the
+ *           background where no field is its; no field has it with CW_BACKGROUND_FIELD; no such
+ *           rule; a value that is not finite; else as cw_extract_labels()
+ * Cost      one pass over the fields, then as cw_extract_labels() of a map of 1, 2 or 4 bytes a voxel, which
+ *           is made. CW_BACKGROUND_REST takes 4 bytes a voxel more
+ * Threads   the same bytes for any number
+ * Source    points on edges of several materials [JuLosassoSchaeferWarren2002]; surface nets
+ *           [Gibson1998] */
+CW_NODISCARD CW_API cw_status cw_extract_label_scores(const cw_label_scores *fields,
+                                                      const cw_labels_desc *desc,
+                                                      cw_label_surfaces *surfaces,
+                                                      cw_error *err);
+
+/* Makes the label map of the largest fields, as cw_extract_label_scores() has it.
+ *
+ * fields      borrowed
+ * background  the label of what is no object
+ * threads     0: one per processor
+ * map         filled with CW_U8, CW_U16 or CW_U32, as the largest label needs it; emptied on failure. Free
+ *             it with cw_volume_free()
+ * Returns     as cw_extract_label_scores() */
+CW_NODISCARD CW_API cw_status cw_label_scores_largest(const cw_label_scores *fields,
+                                                      uint32_t background, int threads,
+                                                      cw_volume *map, cw_error *err);
 
 /* Counts the voxels of all labels but the background.
  *

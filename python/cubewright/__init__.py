@@ -34,6 +34,7 @@ from ._extract import (
     resample_labels,
 )
 from ._handles import Closed, close_handles
+from ._label_scores import extract_label_scores
 from ._library import lib as _lib
 from ._memory import memory_limit, memory_overflow, memory_overflowed, memory_used
 from ._mesh import Mesh
@@ -107,6 +108,7 @@ __all__ = [
     "cut_pieces",
     "engrave",
     "extract",
+    "extract_label_scores",
     "extract_labels",
     "extract_levels",
     "features",

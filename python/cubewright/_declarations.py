@@ -287,6 +287,13 @@ class cw_keeps(enum.IntEnum):
     CW_KEEPS_ALL = 32767
 
 
+class cw_background_rule(enum.IntEnum):
+    CW_BACKGROUND_VALUE = 0
+    CW_BACKGROUND_FIELD = 1
+    CW_BACKGROUND_REST = 2
+    CW_BACKGROUND_RULE_COUNT = 3
+
+
 class cw_label_kernel(enum.IntEnum):
     CW_LABEL_KERNEL_MAJORITY = 0
     CW_LABEL_KERNEL_NEAREST = 1
@@ -2783,6 +2790,48 @@ cw_label_surfaces._fields_ = [
 ]
 
 
+class cw_label_prediction(Structure):
+    labels: int
+    patches: int
+    vertices: int
+    triangles: int
+    own_triangles: int
+    bytes: int
+
+
+cw_label_prediction._fields_ = [
+    ("labels", c_size_t),
+    ("patches", c_size_t),
+    ("vertices", c_size_t),
+    ("triangles", c_size_t),
+    ("own_triangles", c_size_t),
+    ("bytes", c_size_t),
+]
+
+
+class cw_label_scores(Structure):
+    version: int
+    fields: Any
+    count: int
+    labels: Any
+    names: Any
+    rule: int
+    value: float
+    has_value: bool
+
+
+cw_label_scores._fields_ = [
+    ("version", c_uint32),
+    ("fields", POINTER(cw_volume)),
+    ("count", c_size_t),
+    ("labels", POINTER(c_uint32)),
+    ("names", POINTER(c_char_p)),
+    ("rule", c_int),
+    ("value", c_double),
+    ("has_value", c_bool),
+]
+
+
 class cw_label_clean_desc(Structure):
     version: int
     background: int
@@ -4515,6 +4564,10 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "cw_hard_sample": (c_int, [POINTER(cw_hard_desc), POINTER(cw_volume), POINTER(cw_error)]),
     "cw_extract_labels": (c_int, [POINTER(cw_volume), POINTER(cw_labels_desc), POINTER(cw_label_surfaces), POINTER(cw_error)]),
     "cw_extract_labels_stream": (c_int, [POINTER(cw_slice_source), POINTER(cw_labels_desc), POINTER(cw_label_surfaces), POINTER(cw_error)]),
+    "cw_extract_labels_predict": (c_int, [POINTER(cw_volume), POINTER(cw_labels_desc), POINTER(cw_label_prediction), POINTER(cw_error)]),
+    "cw_extract_labels_stream_predict": (c_int, [POINTER(cw_slice_source), POINTER(cw_labels_desc), POINTER(cw_label_prediction), POINTER(cw_error)]),
+    "cw_extract_label_scores": (c_int, [POINTER(cw_label_scores), POINTER(cw_labels_desc), POINTER(cw_label_surfaces), POINTER(cw_error)]),
+    "cw_label_scores_largest": (c_int, [POINTER(cw_label_scores), c_uint32, c_int, POINTER(cw_volume), POINTER(cw_error)]),
     "cw_label_counts": (c_int, [POINTER(cw_volume), c_uint32, POINTER(POINTER(cw_label_count)), POINTER(c_size_t), POINTER(cw_error)]),
     "cw_label_counts_free": (None, [POINTER(cw_label_count)]),
     "cw_labels_clean": (c_int, [POINTER(cw_volume), POINTER(cw_label_clean_desc), POINTER(cw_volume), POINTER(POINTER(cw_label_change)), POINTER(c_size_t), POINTER(cw_error)]),

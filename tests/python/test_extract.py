@@ -220,6 +220,37 @@ class Surfaces(Case):
         with self.fails(cw.Status.ARGUMENT):
             cw.extract_labels(np.full((4, 4, 4), 0.5, "f4"))
 
+    def test_labels_of_fields(self):
+        z, y, x = np.mgrid[:20, :22, :24]
+        balls = [6 - np.hypot(np.hypot(x - p, y - 10.3), z - 9.2) for p in (8.1, 15.2)]
+        scores = np.stack([np.zeros_like(x, "f8"), *balls])
+        fields = np.exp(scores) / np.exp(scores).sum(0)
+        found = cw.extract_label_scores(fields, "first")
+        self.assertEqual(set(found.voxels), {1, 2})
+        for label, mesh in found.meshes().items():
+            self.assertTrue(cw.check(mesh).holds)
+            middle = np.array(((8.1, 15.2)[label - 1], 10.3, 9.2)) - mesh.origin
+            far = np.abs(np.linalg.norm(mesh.vertices - middle, axis=1) - 6)
+            self.assertLess(np.median(far), 0.05)
+        rest = cw.extract_label_scores(list(fields[1:]), "rest", threads=1)
+        self.assertEqual(rest.voxels, found.voxels)
+        self.assertLess(np.abs(rest.shared.vertices - found.shared.vertices).max(), 1e-4)
+        same = cw.extract_label_scores(cw.Volume(np.moveaxis(fields, 0, -1).copy(), components=True), "first")
+        np.testing.assert_array_equal(same.shared.vertices, found.shared.vertices)
+        half = cw.extract_label_scores(fields[1:].astype("f2"), 0.5, [9], numbers=[4, 9])
+        self.assertEqual(set(half.voxels), {9})
+        steps = cw.extract_label_scores(scores, "first", numbers=[7, 3, 5], max_move=0)
+        self.assertEqual(set(steps.voxels), {3, 5})
+        with self.fails(cw.Status.ARGUMENT, "one grid"):
+            cw.extract_label_scores([fields[0], fields[1][1:]], 0.5)
+        with self.fails(cw.Status.ARGUMENT, "both have label 4"):
+            cw.extract_label_scores(fields[1:], 0.5, numbers=[4, 4])
+        for wrong in ("last", "all"):
+            self.assertRaises(ValueError, cw.extract_label_scores, fields, wrong)
+        self.assertRaises(ValueError, cw.extract_label_scores, [], 0.5)
+        self.assertRaises(ValueError, cw.extract_label_scores, fields, 0.5, numbers=[1])
+        self.assertRaises(TypeError, cw.extract_label_scores, 3, 0.5)
+
     def test_labels_are_cleaned(self):
         cells = cw.make("labels/cells", dims=20, labels=4, type="u8").array.astype("i8") * -7
         dirty = cells.copy()

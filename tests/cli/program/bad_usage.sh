@@ -1,6 +1,6 @@
 # The nearest name, the value expected, the usage.
 for arguments in 'extrat' 'xyz' 'extract' 'extract a b --iso 1 -o c.glb' 'extract a --isso 1' \
-    'extract a --iso' 'extract a --iso one' 'extract a --iso=nan' 'extract a --inside left' \
+    'extract a --iso' 'extract a --labels -o b.stl' 'extract a --iso one' 'extract a --iso=nan' 'extract a --inside left' \
     'extract a -z' 'extract a --open=yes' 'extract a --local=yes' 'extract a --spacing 1,2' 'extract a --spacing 0mm' \
     'extract a --memory 8X' 'extract a -o b.glb' 'extract a --iso 1' 'extract a --no-iso' \
     'make' 'make spere -o a.nrrd' 'make sphere' 'make sphere -o a.nrrd --dims 4x4' \

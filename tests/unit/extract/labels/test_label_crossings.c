@@ -16,11 +16,11 @@ static float *tangled;
 static double fraction;
 
 /* Moves vertices to anywhere in their cubes. */
-static cw_status tangle_vertices(cwi_label_net *net, const float *originals, float *spare,
-                                 cw_label_surfaces *surfaces, const cw_labels_desc *desc,
-                                 const size_t dim[3], cw_error *err)
+static cw_status tangle_vertices(void *context, cwi_label_net *net, const float *originals,
+                                 float *spare, cw_label_surfaces *surfaces,
+                                 const cw_labels_desc *desc, const size_t dim[3], cw_error *err)
 {
-    (void)spare, (void)desc, (void)dim, (void)err;
+    (void)context, (void)spare, (void)desc, (void)dim, (void)err;
     const size_t count = surfaces->mesh.vertex_count;
     tangled = malloc((3 * count + 1) * sizeof *tangled);
     assert_non_null(tangled);
@@ -33,6 +33,8 @@ static cw_status tangle_vertices(cwi_label_net *net, const float *originals, flo
     }
     return CW_OK;
 }
+
+static const cwi_label_smoother tangler = {tangle_vertices, NULL};
 
 /* Puts tangled places into the world, and all vertices of triangles that cross back to where they
  * are without smoothing, until none cross. Returns the number that were put back. */
@@ -111,7 +113,7 @@ static void tangles_are_found_as_among_all(void **state)
         fill_map(cw_volume_voxels(&v), dim, n);
         fraction = (double[]){0.02, 0.1, 0.4, 1}[(n + n / 4) % 4];
         const cw_labels_desc desc = {.threads = 1 + n % 2, .leave_open = n % 3 == 0};
-        assert_ok(cwi_extract_labels_with(&v, &desc, tangle_vertices, &s, &err), err);
+        assert_ok(cwi_extract_labels_with(&v, &desc, &tangler, &s, &err), err);
         assert_ok(cw_extract_labels(
                       &v, &(cw_labels_desc){.no_smoothing = true, .leave_open = n % 3 == 0},
                       &plain, &err),

@@ -1,6 +1,6 @@
 /* Tests label maps: every label a closed manifold, neighbours with the same triangles, of all
  * neighbourhoods, random maps, spheres, and voxels of any type. */
-#include "support/support.h"
+#include "support/label_surfaces.h"
 
 #include "core/base/memory.h"
 #include "core/base/status.h"
@@ -19,54 +19,6 @@ static uint32_t *make_map(cw_volume *v, size_t nx, size_t ny, size_t nz)
     return cw_volume_voxels(v);
 }
 
-/* Checks one label: closed, oriented, manifold, also for readers who weld. */
-static void check_label(const cw_label_surfaces *s, uint32_t label)
-{
-    cw_mesh mesh;
-    cw_quality q;
-    cw_error err = {0};
-    const cw_quality_desc welded = {.weld = CW_WELD_WORLD, .shells = true, .threads = 1};
-    assert_ok(cw_label_mesh(s, label, &mesh, &err), err);
-    assert_true(mesh.triangle_count > 0);
-    assert_ok(cw_quality_measure(&mesh, &welded, &q, &err), err);
-    if (!cw_quality_is_closed_manifold(&q) || q.duplicates || q.degenerate ||
-        q.merged_vertices || q.unused_vertices || q.inside_out)
-        fail_msg("label %u: %zu open, %zu non-manifold edges, %zu vertices, %zu misoriented, "
-                 "%zu duplicates, %zu degenerate, %zu merged, %zu unused, %zu inside out",
-                 label, q.open_edges, q.nonmanifold_edges, q.nonmanifold_vertices,
-                 q.misoriented_edges, q.duplicates, q.degenerate, q.merged_vertices,
-                 q.unused_vertices, q.inside_out);
-    assert_true(q.volume_mm3 > 0);
-    cw_mesh_free(&mesh);
-}
-
-/* Checks the whole: patches in order, each triangle in one, and no crossings, so that no label
- * crosses itself or another. */
-static void check_whole(const cw_label_surfaces *s)
-{
-    size_t next = 0;
-    for (size_t p = 0; p < s->patch_count; p++) {
-        const cw_label_patch *patch = &s->patches[p];
-        assert_true(patch->first == next && patch->count > 0);
-        assert_true(patch->labels[0] != patch->labels[1]);
-        assert_true(patch->labels[0] != s->background);
-        assert_true(patch->labels[1] == s->background || patch->labels[0] < patch->labels[1]);
-        if (p > 0)
-            assert_true(s->patches[p - 1].labels[0] < patch->labels[0] ||
-                        s->patches[p - 1].labels[1] < patch->labels[1]);
-        next += patch->count;
-    }
-    assert_true(next == s->mesh.triangle_count);
-    cw_crossings crossings = {0};
-    cw_error err = {0};
-    assert_ok(
-        cw_self_intersections(&s->mesh, &(cw_crossings_desc){.threads = 1}, &crossings, &err),
-        err);
-    if (crossings.count > 0)
-        fail_msg("patches cross each other %zu times", crossings.count);
-    cw_crossings_free(&crossings);
-}
-
 /* Extracts a map with and without smoothing, and checks all of it. */
 static void check_map(const cw_volume *v, const cw_labels_desc *desc)
 {
@@ -76,9 +28,7 @@ static void check_map(const cw_volume *v, const cw_labels_desc *desc)
         cw_error err = {0};
         how.no_smoothing = !smooth;
         assert_ok(cw_extract_labels(v, &how, &s, &err), err);
-        check_whole(&s);
-        for (size_t n = 0; n < s.label_count; n++)
-            check_label(&s, s.labels[n].label);
+        test_check_label_surfaces(&s);
         cw_label_surfaces_free(&s);
     }
 }
@@ -335,16 +285,24 @@ static cw_slice_source source_of(slices *s)
     return source;
 }
 
-static void assert_same_surfaces(const cw_label_surfaces *a, const cw_label_surfaces *b)
+/* Checks a prediction against the surfaces. They are small: patches, and not vertices, may be most of
+ * the memory, so that bytes are only held against the mesh. */
+static void check_prediction(const cw_label_prediction *p, const cw_label_surfaces *s)
 {
-    assert_int_equal(a->mesh.vertex_count, b->mesh.vertex_count);
-    assert_int_equal(a->mesh.triangle_count, b->mesh.triangle_count);
-    assert_memory_equal(a->mesh.triangles, b->mesh.triangles, 12 * a->mesh.triangle_count);
-    assert_memory_equal(a->mesh.positions, b->mesh.positions, 12 * a->mesh.vertex_count);
-    assert_int_equal(a->patch_count, b->patch_count);
-    assert_memory_equal(a->patches, b->patches, a->patch_count * sizeof *a->patches);
-    assert_int_equal(a->label_count, b->label_count);
-    assert_memory_equal(a->labels, b->labels, a->label_count * sizeof *a->labels);
+    size_t own = 0;
+    for (size_t n = 0; n < s->label_count; n++) {
+        cw_mesh mesh;
+        cw_error err = {0};
+        assert_ok(cw_label_mesh(s, s->labels[n].label, &mesh, &err), err);
+        own += mesh.triangle_count;
+        cw_mesh_free(&mesh);
+    }
+    assert_int_equal(p->labels, s->label_count);
+    assert_int_equal(p->patches, s->patch_count);
+    assert_int_equal(p->vertices, s->mesh.vertex_count);
+    assert_int_equal(p->triangles, s->mesh.triangle_count);
+    assert_int_equal(p->own_triangles, own);
+    assert_true(p->bytes >= 12 * (s->mesh.vertex_count + s->mesh.triangle_count));
 }
 
 static void slices_give_the_same_surfaces(void **state)
@@ -367,12 +325,21 @@ static void slices_give_the_same_surfaces(void **state)
             for (size_t n = 0; n < 20 * 13 * heights[h]; n++)
                 to[n] = n > 0 && rand() % 4 ? to[n - 1] : (uint32_t)rand() % 9;
             assert_ok(cw_extract_labels(&v, &desc, &whole, &err), err);
+            cw_label_prediction predicted[2];
+            slices first = {.volume = &v};
+            const cw_slice_source source_once = source_of(&first);
+            assert_ok(cw_extract_labels_predict(&v, &desc, &predicted[0], &err), err);
+            assert_ok(
+                cw_extract_labels_stream_predict(&source_once, &desc, &predicted[1], &err),
+                err);
+            check_prediction(&predicted[0], &whole);
+            check_prediction(&predicted[1], &whole);
             for (size_t chunks = 0; chunks < 4; chunks += test_is_short() ? 3 : 1) {
                 slices s = {.volume = &v};
                 const cw_slice_source source = source_of(&s);
                 cw_label_surfaces got;
                 assert_ok(cwi_extract_labels_windowed(&source, chunks, &desc, &got, &err), err);
-                assert_same_surfaces(&got, &whole);
+                test_assert_same_labels(&got, &whole);
                 cw_label_surfaces_free(&got);
             }
             cw_label_surfaces_free(&whole);
@@ -394,6 +361,9 @@ static void slices_that_fail_are_errors(void **state)
     assert_fails(cwi_extract_labels_windowed(&source, 1, NULL, &got, &err), CW_ERR_ARGUMENT,
                  "voxel 2, 3, 50 is 0.25", err);
     assert_null(got.mesh.triangles);
+    cw_label_prediction predicted;
+    assert_fails(cw_extract_labels_predict(&v, NULL, &predicted, &err), CW_ERR_ARGUMENT,
+                 "voxel 2, 3, 50 is 0.25", err);
     to[(50 * 6 + 3) * 5 + 2] = 2;
     s = (slices){.volume = &v, .fails_at = 30};
     assert_fails(cwi_extract_labels_windowed(&source, 1, NULL, &got, &err), CW_ERR_IO,

@@ -265,7 +265,7 @@ static void the_table_of_formats_is_whole_and_always_the_same(void **state)
 {
     (void)state;
     static const char expected[] =
-        "nrrd nifti metaimage vtk vtu vtm vti vtkhdf mrc inr mgh npy dicom tiff png bmp zarr n5 "
+        "nrrd nifti metaimage vtk vtu vtm vti vtkhdf mrc inr mgh npy npz dicom tiff png bmp zarr n5 "
         "precomputed vdb plot3d raw glb gltf stl ply obj off 3mf vtp gifti freesurfer drc neuroglancer ";
     char names[400] = "";
     size_t count, again;
