@@ -54,7 +54,7 @@ static cw_status read_map(cli_label_run *r, cw_error *err)
     input.of_labels = true;
     cw_status st = cli_read_volume(args->common.inputs[0], &input, false, &r->volume, err);
     if (st == CW_OK && r->volume.streams && args->stream == CLI_STREAM_AUTO)
-        cli_say("%s: voxels exceed --memory: read and extracted slice by slice",
+        cli_say("%s: voxels exceed half of --memory: read and extracted slice by slice",
                 r->volume.path);
     return st;
 }

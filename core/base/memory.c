@@ -201,6 +201,7 @@ static void watch_forks(void)
 cw_status cw_memory_overflow(const cw_overflow_desc *desc, cw_error *err)
 {
     static pthread_once_t once = PTHREAD_ONCE_INIT;
+    CWI_REQUIRE(err, account);
     CWI_REQUIRE_VERSION(err, desc, 0);
     cw_overflow_desc d = desc ? *desc : (cw_overflow_desc){0};
     char *folder = d.path ? cwi_folder_of(d.path) : NULL;

@@ -514,7 +514,7 @@ class Mistakes(Case):
             cw.memory_overflow(None)
             cw.memory_limit(0)
         np.testing.assert_array_equal(surfaces.shared.triangles, whole.shared.triangles)
-        np.testing.assert_array_equal(surfaces.shared.positions, whole.shared.positions)
+        np.testing.assert_array_equal(surfaces.shared.vertices, whole.shared.vertices)
         del surfaces
         gc.collect()
         self.assertEqual(cw.memory_overflowed(), 0)
