@@ -3,7 +3,7 @@
 
 #include "core/base/memory.h"
 #include "core/base/status.h"
-#include "core/base/temporary_name.h"
+#include "core/files/temporary_name.h"
 #include "formats/bytes/file_pattern.h"
 #include "formats/format_registry.h"
 #include "formats/gltf/gltf_formats.h"

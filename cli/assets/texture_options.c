@@ -3,8 +3,8 @@
 
 #include "cli/framework/console.h"
 #include "cli/framework/quantity.h"
-#include "core/base/atomic_file.h"
 #include "core/base/status.h"
+#include "core/files/atomic_file.h"
 
 #include <stdio.h>
 #include <string.h>

@@ -225,12 +225,15 @@ static cw_status write_sides(cli_label_run *r, const char *found, cw_error *err)
 {
     const cw_label_surfaces *s = &r->layers[0].surfaces;
     cw_mesh mesh = s->mesh;
-    uint32_t *sides = malloc(2 * s->mesh.triangle_count * sizeof *sides);
+    uint32_t *sides = cwi_alloc_large(s->mesh.triangle_count, 2 * sizeof *sides);
     if (!sides)
         return cwi_fail_memory(err);
     for (size_t p = 0; p < s->patch_count; p++)
-        for (size_t t = s->patches[p].first; t < s->patches[p].first + s->patches[p].count; t++)
+        for (size_t t = s->patches[p].first; t < s->patches[p].first + s->patches[p].count;
+             t++) {
             memcpy(sides + 2 * t, s->patches[p].labels, 2 * sizeof *sides);
+            cwi_memory_trim_at(t);
+        }
     cw_label_table labels = {0};
     const cw_part part = {.mesh = &mesh, .name = "labels"};
     const cw_write_desc more = {.sides = sides, .labels = &labels};
@@ -243,12 +246,12 @@ static cw_status write_sides(cli_label_run *r, const char *found, cw_error *err)
     if (st == CW_OK)
         st = deliver_file(r, 0, &part, 1, 0, r->item_count, &more, found, err);
     cw_label_table_free(&labels);
-    free(sides);
+    cwi_free(sides);
     return st;
 }
 
 /* Copies a patch as a part that is named by both of its labels. */
-static cw_status add_patch(const cli_label_run *r, const cli_label_layer *layer,
+static cw_status add_patch(cli_label_run *r, const cli_label_layer *layer,
                            const cw_label_patch *patch, cw_mesh *mesh, cw_label *label,
                            char name[2 * CLI_LABEL_NAME], cw_part *part, cw_error *err)
 {
@@ -260,7 +263,13 @@ static cw_status add_patch(const cli_label_run *r, const cli_label_layer *layer,
              has_rest ? "background" : names[1]);
     label->name = name;
     *part = (cw_part){.mesh = mesh, .name = name, .label = label};
-    return cw_label_patch_mesh(&layer->surfaces, patch, mesh, err);
+    cw_mesh made;
+    cw_status st = cw_label_patch_mesh(&layer->surfaces, patch, &made, err);
+    if (st == CW_OK)
+        st = cwi_mesh_store_keep(&r->store, &made, mesh, err);
+    if (st != CW_OK)
+        cw_mesh_free(&made);
+    return st;
 }
 
 /* Writes a part an interface. */
@@ -290,7 +299,7 @@ static cw_status write_patches(cli_label_run *r, const char *found, cw_error *er
     if (st == CW_OK)
         st = deliver_file(r, 0, parts, count, 0, r->item_count, NULL, found, err);
     for (size_t n = 0; n < count; n++)
-        cw_mesh_free(&meshes[n]);
+        cwi_mesh_store_release(&r->store, &meshes[n]);
     free(parts);
     free(meshes);
     free(labels);

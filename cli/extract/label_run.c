@@ -54,7 +54,7 @@ static cw_status read_map(cli_label_run *r, cw_error *err)
     input.of_labels = true;
     cw_status st = cli_read_volume(args->common.inputs[0], &input, false, &r->volume, err);
     if (st == CW_OK && r->volume.streams && args->stream == CLI_STREAM_AUTO)
-        cli_say("%s: voxels exceed --memory: read and extracted slice by slice",
+        cli_say("%s: voxels exceed half of --memory: read and extracted slice by slice",
                 r->volume.path);
     return st;
 }
@@ -359,10 +359,8 @@ static cw_status take_label(void *user, cw_pipeline_surface *surface,
     cw_status st = r->args->check ? hold_item(r, item, err) : CW_OK;
     if (st == CW_OK)
         st = measure_item(r, item, surface, err);
-    if (!r->args->shared_faces) {
-        item->mesh = *surface->mesh;
-        *surface->mesh = (cw_mesh){0};
-    }
+    if (st == CW_OK && !r->args->shared_faces)
+        st = cwi_mesh_store_keep(&r->store, surface->mesh, &item->mesh, err);
     if (st != CW_OK || item != &r->items[r->item_count - 1])
         return st;
     r->triangles = count_triangles(r);
@@ -441,6 +439,47 @@ static cw_status check_side_outputs(cli_label_run *r, cw_error *err)
                : st;
 }
 
+static void tell_overflow(void *user, size_t bytes)
+{
+    const cli_label_run *r = user;
+    cli_say(
+        "%s: label surfaces exceed --memory: kept in temporary files of about %s beside the "
+        "output",
+        r->args->common.inputs[0], cli_bytes((double)bytes));
+}
+
+/* Lets arrays beyond --memory go to files beside the output. Where none can be made, memory has to do. */
+static void begin_overflow(const cli_label_run *r)
+{
+    char *path = cwi_strdup(r->args->output);
+    char *brace = path ? strchr(path, '{') : NULL; /* of a name that is not known yet */
+    if (brace)
+        *brace = '\0';
+    const cw_overflow_desc desc = {.path = path, .report = tell_overflow, .user = (void *)r};
+    if (path && cw_memory_overflow(&desc, NULL) != CW_OK)
+        cli_say_v("%s: no temporary files beside it for what exceeds --memory", path);
+    cwi_free(path);
+}
+
+/* Announces the meshes of all labels, or interfaces. They go to a store if they may exceed the memory that is
+ * left. */
+static cw_status expect_meshes(cli_label_run *r, cw_error *err)
+{
+    enum { TRIANGLE = 24 }; /* bytes, with half a vertex and its normal */
+    size_t triangles = 0;
+    for (size_t n = 0; n < r->layer_count; n++) {
+        const cw_label_surfaces *s = &r->layers[n].surfaces;
+        for (size_t p = 0; p < s->patch_count; p++)
+            triangles +=
+                s->patches[p].count *
+                (r->args->shared_faces || s->patches[p].labels[1] == s->background ? 1 : 2);
+    }
+    if (r->error_mm > 0 || r->target || r->args->lod.count) /* it jumps between pages */
+        return cw_memory_overflow(NULL, err);
+    r->store.is_used = TRIANGLE * triangles > cwi_memory_left() / 2;
+    return cwi_memory_expect(TRIANGLE * triangles, err);
+}
+
 static cw_status run_labels(void *state, cw_error *err)
 {
     cli_label_run *r = state;
@@ -450,6 +489,8 @@ static cw_status run_labels(void *state, cw_error *err)
     cli_report_next(&r->report, NULL, 0); /* its path is known once the labels are */
     if (st == CW_OK)
         st = cli_name_label_file(r, err);
+    if (st == CW_OK && r->args->stream != CLI_STREAM_NEVER)
+        begin_overflow(r);
     if (st == CW_OK)
         st = read_input(r, err);
     if (st == CW_OK)
@@ -469,6 +510,8 @@ static cw_status run_labels(void *state, cw_error *err)
     if (st == CW_OK && r->args->lod.count)
         st = reserve_levels(r, err);
     if (st == CW_OK)
+        st = expect_meshes(r, err);
+    if (st == CW_OK)
         st = make_meshes(r, err);
     if (st == CW_OK)
         st = r->args->lod.count ? cli_write_label_levels(r, err) : cli_write_labels(r, err);
@@ -478,11 +521,12 @@ static cw_status run_labels(void *state, cw_error *err)
 static void free_run(cli_label_run *r)
 {
     for (size_t n = 0; n < r->item_count; n++)
-        cw_mesh_free(&r->items[n].mesh);
+        cwi_mesh_store_release(&r->store, &r->items[n].mesh);
     for (size_t n = 0; n < r->layer_count; n++)
         cli_free_label_layer(&r->layers[n]);
     for (size_t n = 0; n < r->level_count * r->item_count; n++)
-        cw_mesh_free(&r->levels[n]);
+        cwi_mesh_store_release(&r->store, &r->levels[n]);
+    cwi_mesh_store_free(&r->store);
     free(r->levels);
     free(r->level_errors);
     free(r->items);
@@ -509,5 +553,6 @@ cw_status cli_extract_labels(const cli_extract_args *args, cw_error *err)
                          .state = &r};
     cw_status st = cli_run_reported(&run, &r.report, err);
     free_run(&r);
-    return st;
+    const cw_status closed = cw_memory_overflow(NULL, NULL);
+    return st == CW_OK ? closed : st;
 }

@@ -5,6 +5,7 @@
 #include "cli/extract/extract_run.h"
 #include "cli/inputs/label_choice.h"
 #include "cli/label_inputs/label_inputs.h"
+#include "core/mesh/mesh_store.h"
 
 #include <cubewright/labels.h>
 
@@ -49,6 +50,7 @@ typedef struct cli_label_run {
     cw_mesh *levels;  /* of --lod: item_count meshes a level */
     double (*level_errors)[2]; /* their largest and rms errors, mm */
     size_t level_count;
+    cwi_mesh_store store; /* of the meshes of items, levels and interfaces */
     cli_outputs files;
     cli_report report;
     double start;

@@ -4,9 +4,9 @@
 
 #include "cli/framework/json_writer.h"
 #include "cli/results/output_names.h"
-#include "core/base/atomic_file.h"
 #include "core/base/memory.h"
 #include "core/base/status.h"
+#include "core/files/atomic_file.h"
 
 #include <errno.h>
 #include <jansson.h>

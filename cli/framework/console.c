@@ -4,8 +4,8 @@
 
 #include "cli/framework/field_names.h"
 #include "cli/framework/quantity.h"
-#include "core/base/atomic_file.h"
 #include "core/base/clock.h"
+#include "core/files/atomic_file.h"
 
 #include <signal.h>
 #include <stdarg.h>

@@ -2,10 +2,10 @@
  * words of the command line, and are parsed as such. */
 #include "cli/framework/run_config.h"
 
-#include "core/base/atomic_file.h"
 #include "core/base/memory.h"
 #include "core/base/status.h"
 #include "core/base/text.h"
+#include "core/files/atomic_file.h"
 
 #include <errno.h>
 #include <jansson.h>

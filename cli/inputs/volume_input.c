@@ -309,7 +309,9 @@ static bool needs_slices(const cli_input *input, const cw_volume *part, size_t l
         voxel *= 2;
     if (input->denoise.given)
         voxel += cw_type_size(cli_denoised_type(input, part));
-    const double bytes = voxels * (double)voxel;
+    double bytes = voxels * (double)voxel;
+    if (input->of_labels) /* half of the memory is for their surfaces */
+        bytes *= 2;
     return input->may_stream && !cli_find_unstreamed_preparation(input) && !part->cells &&
            !part->sparse && input->stream != CLI_STREAM_NEVER &&
            (input->stream == CLI_STREAM_ALWAYS ||

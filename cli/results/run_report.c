@@ -8,10 +8,10 @@
 #include "cli/results/check_verdicts.h"
 #include "cli/results/compress_options.h"
 #include "cli/results/stage_facts.h"
-#include "core/base/atomic_file.h"
 #include "core/base/memory.h"
 #include "core/base/status.h"
 #include "core/base/text.h"
+#include "core/files/atomic_file.h"
 
 #include <cubewright/level_set.h>
 #include <cubewright/simplify.h>

@@ -2,8 +2,8 @@
 #define _GNU_SOURCE /* realpath, strdup */
 #include "cli/session/view.h"
 
-#include "core/base/atomic_file.h"
 #include "core/base/text.h"
+#include "core/files/atomic_file.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -3,10 +3,10 @@
 #include "cli/framework/console.h"
 #include "cli/session/verbs.h"
 
-#include "core/base/atomic_file.h"
 #include "core/base/memory.h"
 #include "core/base/status.h"
 #include "core/base/text.h"
+#include "core/files/atomic_file.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -3,10 +3,10 @@
 #include "cli/session/view.h"
 #include "cli/session/view_measure.h"
 
-#include "core/base/atomic_file.h"
 #include "core/base/memory.h"
 #include "core/base/status.h"
 #include "core/base/text.h"
+#include "core/files/atomic_file.h"
 
 #include <stdio.h>
 #include <stdlib.h>

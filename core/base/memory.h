@@ -50,6 +50,31 @@ void cwi_memory_give(size_t bytes);
 /* Returns the bytes that may still be allocated; SIZE_MAX without a limit. */
 size_t cwi_memory_left(void);
 
+/* Announces arrays of some bytes. If they exceed the limit, and cw_memory_overflow() has a
+ * folder for them, large ones go to files from now on, so that half of the limit is left for the pages of
+ * these.
+ * Returns  CW_ERR_OUTPUT: the disk has no room for them */
+CW_NODISCARD cw_status cwi_memory_expect(size_t bytes, cw_error *err);
+
+/* Drops pages of arrays in files from memory if they exceed what the limit leaves. Sweeps over arrays call it
+ * after each piece of work, as cwi_parallel_for() and cwi_progress() do. It costs next to nothing where no
+ * array is in a file, and microseconds otherwise. */
+void cwi_memory_trim(void);
+
+/* Returns true for an array that is in a file. */
+bool cwi_memory_is_in_file(const void *memory);
+
+/* Trims at every 16384th element of a sweep. */
+static inline void cwi_memory_trim_at(size_t n)
+{
+    if (n % (1 << 14) == 0)
+        cwi_memory_trim();
+}
+
+/* Copies and sets bytes of large arrays as memcpy() and memset() do, and trims on the way. */
+void cwi_copy_large(void *to, const void *from, size_t bytes);
+void cwi_set_large(void *to, int byte, size_t bytes);
+
 /* Returns the bytes that the limit refused last, and those that were left then; 0: it refused
  * none. */
 size_t cwi_memory_refused(size_t *left);

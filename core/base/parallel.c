@@ -1,6 +1,7 @@
 /* Runs work on the layers of a volume in parallel, with progress reports and cancellation. */
 #include "core/base/parallel.h"
 
+#include "core/base/memory.h"
 #include "core/base/status.h"
 #include "core/base/thread_pool.h"
 
@@ -52,8 +53,10 @@ static void run_items(void *context, int number)
         if (number == 0 && begin > 0)
             report_layer(j, begin);
         for (size_t k = begin; k < begin + j->turn && k < j->layers; k++)
-            if (!atomic_load_explicit(&j->is_stopped, memory_order_relaxed))
+            if (!atomic_load_explicit(&j->is_stopped, memory_order_relaxed)) {
                 j->work(j->context, k);
+                cwi_memory_trim();
+            }
     }
     loop.is_inside = was_inside;
     loop.number = outer_number;

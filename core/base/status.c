@@ -1,6 +1,8 @@
 /* Fills in errors, describes status codes, and reports progress. */
 #include "core/base/status.h"
 
+#include "core/base/memory.h"
+
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
@@ -82,6 +84,7 @@ bool cwi_begin_call(cw_error *err, const char *function, const char *names,
 cw_status cwi_progress(const cw_progress *progress, const char *step, double done,
                        cw_error *err)
 {
+    cwi_memory_trim();
     if (progress->report && !progress->report(progress->user, step, done))
         return cwi_fail(err, CW_ERR_CANCELLED, "interrupted while %s", step);
     return CW_OK;

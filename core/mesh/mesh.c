@@ -62,16 +62,28 @@ void cw_label_surfaces_free(cw_label_surfaces *s)
     memset(s, 0, sizeof *s);
 }
 
-/* Whether all numbers are finite. There is no early exit, so that the compiler can look at
+/* Elements of a long array that are looked at before memory is trimmed. */
+enum { BLOCK = 3 << 16 };
+
+static size_t block_end(size_t first, size_t count)
+{
+    return count - first < BLOCK ? count : first + BLOCK;
+}
+
+/* Whether all numbers are finite. There is no early exit from a block, so that the compiler can look at
  * several at a time. */
 static bool are_finite(const float *numbers, size_t count)
 {
     const uint32_t EXPONENT_BITS = 0x7f800000; /* all of its bits: infinite or not a number */
     uint32_t bad = 0;
-    for (size_t i = 0; i < count; i++) {
-        uint32_t bits;
-        memcpy(&bits, &numbers[i], sizeof bits);
-        bad |= (bits & EXPONENT_BITS) == EXPONENT_BITS;
+    for (size_t first = 0; first < count && !bad; first += BLOCK) {
+        const size_t end = block_end(first, count);
+        for (size_t i = first; i < end; i++) {
+            uint32_t bits;
+            memcpy(&bits, &numbers[i], sizeof bits);
+            bad |= (bits & EXPONENT_BITS) == EXPONENT_BITS;
+        }
+        cwi_memory_trim();
     }
     return !bad;
 }
@@ -79,8 +91,12 @@ static bool are_finite(const float *numbers, size_t count)
 static bool are_below(const uint32_t *numbers, size_t count, size_t limit)
 {
     uint32_t max_index = 0;
-    for (size_t i = 0; i < count; i++)
-        max_index = numbers[i] > max_index ? numbers[i] : max_index;
+    for (size_t first = 0; first < count; first += BLOCK) {
+        const size_t end = block_end(first, count);
+        for (size_t i = first; i < end; i++)
+            max_index = numbers[i] > max_index ? numbers[i] : max_index;
+        cwi_memory_trim();
+    }
     return !count || max_index < limit;
 }
 
@@ -124,7 +140,11 @@ bool cw_mesh_bounds(const cw_mesh *mesh, double min[3], double max[3])
         return false;
     double low[3], high[3];
     cwi_box_clear(low, high);
-    cwi_box_add_points(low, high, mesh->positions, mesh->vertex_count);
+    for (size_t v = 0; v < mesh->vertex_count; v += BLOCK) {
+        cwi_box_add_points(low, high, mesh->positions + 3 * v,
+                           block_end(v, mesh->vertex_count) - v);
+        cwi_memory_trim();
+    }
     for (int a = 0; a < 3; a++) {
         min[a] = mesh->vertex_count ? mesh->origin[a] + low[a] : 0;
         max[a] = mesh->vertex_count ? mesh->origin[a] + high[a] : 0;

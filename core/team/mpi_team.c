@@ -1,9 +1,9 @@
 /* Finds out which MPI started the process, and loads the module for it. */
 #include <cubewright/team.h>
 
-#include "core/base/atomic_file.h"
 #include "core/base/module.h"
 #include "core/base/status.h"
+#include "core/files/atomic_file.h"
 #include "core/team/mpi_wrap.h"
 
 #include <stdlib.h>

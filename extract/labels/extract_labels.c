@@ -166,6 +166,16 @@ static cw_status number_vertices(const cwi_label_job *j, size_t chunks, cw_error
     return CW_OK;
 }
 
+/* Estimates the bytes of all arrays that are there at one time, with directions in several patches for a
+ * third of the vertices. */
+static size_t estimate_bytes(const cw_mesh *mesh, bool is_smooth)
+{
+    enum { PLACE = 12, CORNERS = 12, SMOOTHED_VERTEX = 88, SMOOTHED_TRIANGLE = 29 };
+    return is_smooth
+               ? SMOOTHED_VERTEX * mesh->vertex_count + SMOOTHED_TRIANGLE * mesh->triangle_count
+               : PLACE * mesh->vertex_count + CORNERS * mesh->triangle_count;
+}
+
 static cw_status ensure_capacity(cwi_label_job *j, const cw_labels_desc *desc, cw_error *err)
 {
     const cw_volume *v = j->layers.volume;
@@ -175,6 +185,9 @@ static cw_status ensure_capacity(cwi_label_job *j, const cw_labels_desc *desc, c
     if (desc->max_triangles > 0 && mesh->triangle_count > desc->max_triangles)
         return cwi_fail(err, CW_ERR_LIMIT, "the labels make %zu triangles, more than %zu",
                         mesh->triangle_count, desc->max_triangles);
+    cw_status st = cwi_memory_expect(estimate_bytes(mesh, !desc->no_smoothing), err);
+    if (st != CW_OK)
+        return st;
     mesh->positions =
         cwi_alloc_large(mesh->vertex_count + CWI_SPARE_POSITIONS, 3 * sizeof *mesh->positions);
     mesh->triangles = cwi_alloc_large(mesh->triangle_count, 3 * sizeof *mesh->triangles);
@@ -187,7 +200,7 @@ static cw_status ensure_capacity(cwi_label_job *j, const cw_labels_desc *desc, c
         j->places =
             cwi_alloc_large(mesh->vertex_count + CWI_SPARE_POSITIONS, 3 * sizeof *j->places);
         if (net->neighbours)
-            memset(net->neighbours, 0xff, mesh->vertex_count * sizeof *net->neighbours);
+            cwi_set_large(net->neighbours, 0xff, mesh->vertex_count * sizeof *net->neighbours);
     }
     if (!mesh->positions || !mesh->triangles ||
         (!desc->no_smoothing && mesh->vertex_count > 0 &&
@@ -201,11 +214,9 @@ static cw_status ensure_capacity(cwi_label_job *j, const cw_labels_desc *desc, c
     return CW_OK;
 }
 
-/* Fills in the prediction. Bytes of a vertex and a triangle are those of all arrays that are there at
- * one time, with directions in several patches for a third of the vertices. */
+/* Fills in the prediction. */
 static void predict_job(const cwi_label_job *j, const cw_labels_desc *desc)
 {
-    enum { PLACE = 12, CORNERS = 12, SMOOTHED_VERTEX = 88, SMOOTHED_TRIANGLE = 29 };
     const cw_label_surfaces *out = j->out;
     cw_label_prediction *p = j->prediction;
     *p = (cw_label_prediction){.labels = out->label_count,
@@ -216,9 +227,7 @@ static void predict_job(const cwi_label_job *j, const cw_labels_desc *desc)
         const cw_label_patch *patch = &out->patches[n];
         p->own_triangles += (patch->labels[1] == out->background ? 1 : 2) * patch->count;
     }
-    p->bytes = desc->no_smoothing
-                   ? PLACE * p->vertices + CORNERS * p->triangles
-                   : SMOOTHED_VERTEX * p->vertices + SMOOTHED_TRIANGLE * p->triangles;
+    p->bytes = estimate_bytes(&out->mesh, !desc->no_smoothing);
 }
 
 /* Goes through chunks whose slices are in memory. */
@@ -294,7 +303,8 @@ static cw_status smooth_all(cwi_label_job *j, const cw_labels_desc *desc,
                                      .net = &j->net,
                                      .to_point = index_to_point,
                                      .context = j};
-    memcpy(j->originals, mesh->positions, 3 * mesh->vertex_count * sizeof *j->originals);
+    cwi_copy_large(j->originals, mesh->positions,
+                   3 * mesh->vertex_count * sizeof *j->originals);
     pressures.moves.places = mesh->positions;
     cw_status st = cwi_label_net_finish(&j->net, mesh) &&
                            (!keeps_volumes || cwi_label_pressures_init(&pressures))
@@ -327,6 +337,8 @@ static cw_status make_surfaces(cwi_label_job *j, size_t chunks, const cw_labels_
     j->is_writing = true;
     if (st == CW_OK)
         st = run_pass(j, chunks, desc, err);
+    if (j->window)
+        cwi_label_window_close(j->window);
     if (st == CW_OK)
         st = j->originals ? smooth_all(j, desc, smooth, err) : place_all(j, desc, err);
     return st;

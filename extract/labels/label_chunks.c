@@ -416,6 +416,7 @@ static bool scan_chunk(scan *s, size_t first, size_t end)
     bool is_well = load_layer(s, from);
     s->next = s->chunk->vertices;
     for (size_t k = from; k < end && is_well; k++) {
+        cwi_memory_trim();
         swap_layers(s);
         is_well = load_layer(s, k + 1);
         if (!is_well)

@@ -38,7 +38,8 @@
 enum {
     PART = 1 << 14,  /* triangles */
     QUEUE_PART = 64, /* polygons */
-    SEEN = 128       /* polygons that a search remembers */
+    SEEN = 128,      /* polygons that a search remembers */
+    FAR = 8          /* polygons around vertices, which are on pages far from each other */
 };
 
 /* The edge passes through a sound polygon at least this fraction of its length from its ends. That
@@ -216,9 +217,11 @@ static void judge_polygon(cwi_label_crossings *c, size_t polygon, bool may_turn)
 static void judge_part(void *context, size_t n)
 {
     cwi_label_crossings *c = context;
-    for (size_t t = n * PART; t < (n + 1) * PART && t < c->mesh->triangle_count; t++)
+    for (size_t t = n * PART; t < (n + 1) * PART && t < c->mesh->triangle_count; t++) {
         if (c->net->polygons[t])
             judge_polygon(c, t, true);
+        cwi_label_trim(t);
+    }
 }
 
 cw_status cwi_label_crossings_init(cwi_label_crossings *c, const cw_labels_desc *desc,
@@ -233,9 +236,11 @@ cw_status cwi_label_crossings_init(cwi_label_crossings *c, const cw_labels_desc 
         return cwi_fail_memory(err);
     cw_status st = cwi_parallel_for(parts, 8 * PART, desc->threads, &desc->progress,
                                     "looking for crossings", judge_part, c, err);
-    for (size_t t = 0; t < mesh->triangle_count && st == CW_OK; t++)
+    for (size_t t = 0; t < mesh->triangle_count && st == CW_OK; t++) {
         if (c->flags[t] & CWI_POLYGON_QUEUED)
             c->queue[c->queued++] = (uint32_t)t;
+        cwi_memory_trim_at(t);
+    }
     return st;
 }
 
@@ -354,8 +359,11 @@ static void test_around(cwi_label_crossings *c, size_t polygon)
 static void test_part(void *context, size_t n)
 {
     cwi_label_crossings *c = context;
-    for (size_t i = n * QUEUE_PART; i < (n + 1) * QUEUE_PART && i < c->queued; i++)
+    for (size_t i = n * QUEUE_PART; i < (n + 1) * QUEUE_PART && i < c->queued; i++) {
         test_around(c, c->queue[i]);
+        if (i % FAR == 0)
+            cwi_memory_trim();
+    }
 }
 
 cw_status cwi_label_crossings_find(cwi_label_crossings *c, const cw_labels_desc *desc,
@@ -368,8 +376,10 @@ cw_status cwi_label_crossings_find(cwi_label_crossings *c, const cw_labels_desc 
 
 void cwi_label_crossings_renew(cwi_label_crossings *c)
 {
-    for (size_t n = 0; n < c->queued; n++)
+    for (size_t n = 0; n < c->queued; n++) {
         c->flags[c->queue[n]] &= (uint8_t)~CWI_POLYGON_QUEUED;
+        cwi_memory_trim_at(n);
+    }
     c->queued = 0;
     for (size_t v = 0; v < c->mesh->vertex_count; v++) {
         for (uint32_t k = c->net->firsts[v]; k < c->net->firsts[v + 1] && c->hits[v]; k++) {
@@ -380,7 +390,10 @@ void cwi_label_crossings_renew(cwi_label_crossings *c)
             c->flags[polygon] |= CWI_POLYGON_QUEUED;
             c->queue[c->queued++] = polygon;
         }
+        if (c->hits[v] && c->queued % FAR == 0)
+            cwi_memory_trim();
         c->hits[v] = 0;
+        cwi_label_trim(v);
     }
 }
 

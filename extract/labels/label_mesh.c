@@ -1,5 +1,6 @@
 /* Copies meshes out of the interfaces: the closed one of a label, or that of a patch. */
 #include "extract/labels/find_label.h"
+#include "extract/labels/label_net.h"
 
 #include "core/mesh/mesh_triangle.h"
 #include "core/volume/key_counts.h"
@@ -34,6 +35,7 @@ static bool copy_patch(const cw_label_surfaces *s, const cw_label_patch *patch, 
             e->count = ++mesh->vertex_count;
         }
         mesh->triangles[3 * mesh->triangle_count + n] = (uint32_t)(e->count - 1);
+        cwi_label_trim(n);
     }
     mesh->triangle_count += patch->count;
     return true;
@@ -99,8 +101,10 @@ cw_status cw_label_patch_mesh(const cw_label_surfaces *s, const cw_label_patch *
 double cw_label_patch_area(const cw_label_surfaces *s, const cw_label_patch *patch)
 {
     double area = 0;
-    for (size_t t = patch->first; t < patch->first + patch->count; t++)
+    for (size_t t = patch->first; t < patch->first + patch->count; t++) {
         area += cwi_mesh_area(&s->mesh, t);
+        cwi_label_trim(t);
+    }
     return area;
 }
 
@@ -116,6 +120,7 @@ void cw_label_volumes(const cw_label_surfaces *s, double *volumes)
             cwi_mesh_corner(&s->mesh, t, 0, corner);
             cwi_mesh_normal(&s->mesh, t, normal);
             sum += cwi_dot(corner, normal) / 6;
+            cwi_label_trim(t);
         }
         for (int side = 0; side < 2; side++) {
             const size_t n = cwi_find_label(s, s->patches[p].labels[side]);

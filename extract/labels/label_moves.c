@@ -18,6 +18,13 @@ enum {
     LISTED = 0x80 /* beside the bits of a vertex that is held */
 };
 
+/* Trims memory in sweeps over listed vertices, of patches that may be small and far from each other. */
+static void trim_few(size_t n)
+{
+    if (n % 128 == 0)
+        cwi_memory_trim();
+}
+
 /* Computes a triangle's normal on the outside, as long as twice its area. Returns a corner. */
 static inline const float *find_normal(const cwi_label_moves *m, size_t t, double normal[3])
 {
@@ -64,6 +71,7 @@ static void measure_patch(void *context, size_t n)
         areas += area;
         if (m->is_first)
             add_directions(m, t, n, normal, area);
+        cwi_label_trim(t);
     }
     m->patches[n].volume = volume / 6;
     m->patches[n].area = areas / 2;
@@ -99,6 +107,8 @@ static size_t find_curve_shares(const cwi_label_moves *m, uint32_t vertex,
     const cwi_label_net *net = m->net;
     const cw_label_surfaces *f = m->surfaces;
     size_t patch_end = 0, count = 0;
+    if (vertex % 64 == 0) /* each looks at places far from each other */
+        cwi_memory_trim();
     for (uint32_t k = net->firsts[vertex]; k < net->firsts[vertex + 1]; k++) {
         if (net->around[k] >= patch_end) { /* they rise */
             const size_t patch = find_patch(f, net->around[k]);
@@ -152,8 +162,10 @@ static cw_status measure_curves(cwi_label_moves *m, const cw_labels_desc *desc, 
     cw_status st = run_curves(m, count_curve_part, desc, err);
     if (st != CW_OK)
         return st;
-    for (size_t i = 0; i < m->curve_count; i++)
+    for (size_t i = 0; i < m->curve_count; i++) {
         m->curve_firsts[i + 1] += m->curve_firsts[i];
+        cwi_memory_trim_at(i);
+    }
     m->curve_shares =
         cwi_alloc_zeroed(m->curve_firsts[m->curve_count], sizeof *m->curve_shares);
     return m->curve_shares ? run_curves(m, fill_curve_part, desc, err) : cwi_fail_memory(err);
@@ -178,13 +190,17 @@ static void add_effect(const cwi_label_moves *m, size_t v, cwi_label_direction *
 
 static void measure_effects(const cwi_label_moves *m)
 {
-    for (size_t v = 0; v < m->surfaces->mesh.vertex_count; v++)
+    for (size_t v = 0; v < m->surfaces->mesh.vertex_count; v++) {
         if (m->directions[v].area > 0)
             add_effect(m, v, &m->directions[v], m->directions[v].area);
-    for (size_t i = 0; i < m->curve_count; i++)
+        cwi_memory_trim_at(v);
+    }
+    for (size_t i = 0; i < m->curve_count; i++) {
         for (size_t k = m->curve_firsts[i]; k < m->curve_firsts[i + 1]; k++)
             add_effect(m, m->curve[i], &m->curve_shares[k],
                        m->curve_shares[m->curve_firsts[i]].area);
+        cwi_memory_trim_at(i);
+    }
 }
 
 cw_status cwi_label_moves_measure(cwi_label_moves *m, const cw_labels_desc *desc, cw_error *err)
@@ -264,8 +280,10 @@ static void move_part(void *context, size_t n)
 {
     const cwi_label_moves *m = context;
     const size_t count = m->few ? m->few_count : m->surfaces->mesh.vertex_count;
-    for (size_t i = n * PART; i < (n + 1) * PART && i < count; i++)
+    for (size_t i = n * PART; i < (n + 1) * PART && i < count; i++) {
         move_inner(m, m->few ? m->few[i] : i);
+        trim_few(i);
+    }
 }
 
 static void add_held(const cwi_label_moves *m, size_t v, const cwi_label_direction *d,
@@ -288,8 +306,10 @@ static void find_held(const cwi_label_moves *m)
         const size_t v = m->few ? m->few[i] : i;
         if ((m->held[v] || is_back(m, v)) && m->directions[v].area > 0)
             add_held(m, v, &m->directions[v], m->directions[v].area);
+        trim_few(i);
     }
     for (size_t i = 0; i < m->curve_count; i++) {
+        cwi_memory_trim_at(i);
         const cwi_label_direction *shares = m->curve_shares + m->curve_firsts[i];
         const size_t shared = m->curve_firsts[i + 1] - m->curve_firsts[i];
         if (!m->held[m->curve[i]] && !is_back(m, m->curve[i]))
@@ -317,14 +337,17 @@ static bool list_few(cwi_label_moves *m)
             continue;
         for (size_t i = 0; i < 3 * f->patches[n].count; i++) {
             uint8_t *held = &m->held[corner[i]];
+            trim_few(i);
             if (m->directions[corner[i]].area > 0 && !(*held & LISTED)) {
                 *held |= LISTED;
                 m->few[m->few_count++] = corner[i];
             }
         }
     }
-    for (size_t i = 0; i < m->few_count; i++)
+    for (size_t i = 0; i < m->few_count; i++) {
         m->held[m->few[i]] &= (uint8_t)~LISTED;
+        trim_few(i);
+    }
     return m->few;
 }
 
@@ -365,8 +388,10 @@ bool cwi_label_moves_init(cwi_label_moves *m)
     const size_t vertices = f->mesh.vertex_count;
     m->side = cwi_affine_determinant(f->mesh.affine[0]) < 0 ? -1 : 1;
     m->is_first = true;
-    for (size_t v = 0; v < vertices; v++)
+    for (size_t v = 0; v < vertices; v++) {
         m->curve_count += is_on_curve(m, v);
+        cwi_memory_trim_at(v);
+    }
     m->directions = cwi_alloc_large(vertices, sizeof *m->directions);
     m->patches = cwi_alloc_zeroed(f->patch_count, sizeof *m->patches);
     m->curve = cwi_alloc_array(m->curve_count, sizeof *m->curve);
@@ -374,11 +399,13 @@ bool cwi_label_moves_init(cwi_label_moves *m)
     m->held = cwi_alloc_zeroed(vertices, 1);
     if (!m->directions || !m->patches || !m->curve || !m->curve_firsts || !m->held)
         return false;
-    memset(m->directions, 0, vertices * sizeof *m->directions);
+    cwi_set_large(m->directions, 0, vertices * sizeof *m->directions);
     m->curve_count = 0;
-    for (size_t v = 0; v < vertices; v++)
+    for (size_t v = 0; v < vertices; v++) {
         if (is_on_curve(m, v))
             m->curve[m->curve_count++] = (uint32_t)v;
+        cwi_memory_trim_at(v);
+    }
     for (size_t n = 0; n < f->patch_count; n++)
         m->patches[n].is_changed = true;
     return true;

@@ -25,19 +25,24 @@ bool cwi_label_net_finish(cwi_label_net *net, const cw_mesh *mesh)
     net->firsts = cwi_alloc_zeroed(mesh->vertex_count + 1, sizeof *net->firsts);
     if (!net->firsts)
         return false;
-    for (size_t t = 0; t < mesh->triangle_count; t++)
+    for (size_t t = 0; t < mesh->triangle_count; t++) {
         for (int n = net->polygons[t] ? cwi_polygon_corners(net, mesh, t, v) : 0; n-- > 0;)
             net->firsts[v[n]]++;
+        cwi_label_trim(t);
+    }
     for (size_t n = 0; n <= mesh->vertex_count; n++) {
         total += net->firsts[n];
         net->firsts[n] = (uint32_t)total;
+        cwi_memory_trim_at(n);
     }
     net->around = cwi_alloc_large(total, sizeof *net->around);
     if (!net->around)
         return false;
-    for (size_t t = mesh->triangle_count; t-- > 0;)
+    for (size_t t = mesh->triangle_count; t-- > 0;) {
         for (int n = net->polygons[t] ? cwi_polygon_corners(net, mesh, t, v) : 0; n-- > 0;)
             net->around[--net->firsts[v[n]]] = (uint32_t)t;
+        cwi_label_trim(t);
+    }
     return true;
 }
 

@@ -2,6 +2,8 @@
 #ifndef EXTRACT_LABELS_LABEL_NET_H
 #define EXTRACT_LABELS_LABEL_NET_H
 
+#include "core/base/memory.h"
+
 #include <cubewright/mesh.h>
 
 #ifdef __cplusplus
@@ -42,6 +44,14 @@ static inline size_t cwi_polygon_end(const cwi_label_net *net, const cw_mesh *me
 /* Lists a polygon's corners, in one of the two orders around it. Returns their number. */
 int cwi_polygon_corners(const cwi_label_net *net, const cw_mesh *mesh, size_t polygon,
                         uint32_t corners[CWI_POLYGON_CORNERS]);
+
+/* Trims memory in sweeps by patches, at every 1024th element: their vertices are on pages far from each
+ * other. */
+static inline void cwi_label_trim(size_t n)
+{
+    if (n % (1 << 10) == 0)
+        cwi_memory_trim();
+}
 
 /* Makes `firsts` and `around`. Returns false when memory is out. */
 CW_NODISCARD bool cwi_label_net_finish(cwi_label_net *net, const cw_mesh *mesh);

@@ -2,6 +2,8 @@
  * make up for the volumes. */
 #include "extract/labels/label_untangle.h"
 
+#include "core/base/memory.h"
+
 #include <string.h>
 
 /* How often volumes are made up for, and in how many rounds each time. */
@@ -29,6 +31,7 @@ static bool put_back(const cwi_label_crossings *c, cw_mesh *mesh, cwi_label_move
 {
     bool is_any = false;
     for (size_t v = 0; v < mesh->vertex_count; v++) {
+        cwi_label_trim(v);
         if (!c->hits[v])
             continue;
         place_vertex(c, mesh, v, c->originals);
@@ -67,9 +70,11 @@ static cw_status repair_volumes(cwi_label_crossings *c, cw_mesh *mesh, cwi_label
         return st;
     if (restores)
         cwi_label_pressures_restore_small(p, MAX_DEFICIT);
-    for (size_t v = 0; v < mesh->vertex_count; v++)
+    for (size_t v = 0; v < mesh->vertex_count; v++) {
         if (c->hits[v])
             place_vertex(c, mesh, v, p->moves.places);
+        cwi_label_trim(v);
+    }
     cwi_label_crossings_renew(c);
     *is_kept = c->queued == 0 && restores;
     return CW_OK;

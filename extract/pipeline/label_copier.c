@@ -5,6 +5,7 @@
 #include "core/base/memory.h"
 #include "core/base/status.h"
 #include "extract/labels/find_label.h"
+#include "extract/labels/label_net.h"
 
 #include <string.h>
 
@@ -53,7 +54,8 @@ static size_t copy_patch(cwi_label_copier *c, const cw_label_patch *patch, bool 
                          uint32_t *to, size_t count)
 {
     const uint32_t *from = c->surfaces->mesh.triangles + 3 * patch->first;
-    for (size_t t = 0; t < patch->count; t++, from += 3, to += 3)
+    for (size_t t = 0; t < patch->count; t++, from += 3, to += 3) {
+        cwi_label_trim(t);
         for (int k = 0; k < 3; k++) {
             const uint32_t v = from[k && turns ? 3 - k : k];
             if (c->numbers[v] == 0) {
@@ -62,6 +64,7 @@ static size_t copy_patch(cwi_label_copier *c, const cw_label_patch *patch, bool 
             }
             to[k] = c->numbers[v] - 1;
         }
+    }
     return count;
 }
 
@@ -73,6 +76,7 @@ static void take_positions(cwi_label_copier *c, cw_mesh *mesh)
             memcpy(mesh->positions + 3 * n, c->surfaces->mesh.positions + 3 * (size_t)c->met[n],
                    3 * sizeof(float));
         c->numbers[c->met[n]] = 0;
+        cwi_label_trim(n);
     }
 }
 

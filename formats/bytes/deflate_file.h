@@ -2,7 +2,7 @@
 #ifndef FORMATS_BYTES_DEFLATE_FILE_H
 #define FORMATS_BYTES_DEFLATE_FILE_H
 
-#include "core/base/atomic_file.h"
+#include "core/files/atomic_file.h"
 
 #ifndef ZLIB_CONST
 #define ZLIB_CONST /* makes zlib's header declare its input const */

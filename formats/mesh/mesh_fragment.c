@@ -2,9 +2,9 @@
  *
  * A header of HEADER_BYTES, little-endian; positions, normals (if there are any) and triangles, 12
  * bytes each; the CRC-32 of all that. */
-#include "core/base/atomic_file.h"
 #include "core/base/memory.h"
 #include "core/base/status.h"
+#include "core/files/atomic_file.h"
 #include "formats/bytes/input_file.h"
 #include "formats/bytes/little_endian.h"
 #include "formats/mesh/mesh_spool.h"

@@ -5,8 +5,8 @@
 
 #include "core/base/memory.h"
 #include "core/base/status.h"
+#include "core/base/unnamed_file.h"
 #include "core/geometry/box.h"
-#include "formats/mesh/unnamed_file.h"
 
 #include <math.h>
 #include <string.h>
@@ -17,17 +17,6 @@ enum { PIECE = CWI_SPOOL_PIECE };
 
 /* --- writing -------------------------------------------------------------------------------- */
 
-static char *find_folder(const char *path)
-{
-    const char *slash = strrchr(path, '/');
-    if (!slash)
-        return cwi_strdup(".");
-    char *folder = cwi_strdup(path);
-    if (folder)
-        folder[slash == path ? 1 : slash - path] = '\0';
-    return folder;
-}
-
 cw_status cw_mesh_spool_new(const char *path, cw_mesh_spool **out, cw_error *err)
 {
     CWI_REQUIRE(err, path, out);
@@ -37,7 +26,7 @@ cw_status cw_mesh_spool_new(const char *path, cw_mesh_spool **out, cw_error *err
     cw_status st = CW_OK;
     s->segments = &s->mine;
     s->segment_count = 1;
-    s->folder = find_folder(path);
+    s->folder = cwi_folder_of(path);
     for (int n = 0; n < CWI_SPOOL_FILES; n++)
         s->mine.files[n] = -1;
     if (!s->folder)

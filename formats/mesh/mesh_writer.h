@@ -4,8 +4,8 @@
 
 #include <cubewright/formats.h>
 
-#include "core/base/atomic_file.h"
-#include "core/base/atomic_folder.h"
+#include "core/files/atomic_file.h"
+#include "core/files/atomic_folder.h"
 #include "formats/bytes/little_endian.h"
 #include "formats/mesh/mesh_axes.h"
 #include "formats/mesh/mesh_spool.h"

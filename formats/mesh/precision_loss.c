@@ -57,7 +57,8 @@ cw_status cwi_measure_loss(const cwi_part *part, cw_write_loss *loss, cw_error *
 {
     const cw_mesh *mesh = &part->mesh;
     const size_t count = mesh->vertex_count;
-    if (part->spool) { /* its vertices are not compared */
+    if (part->spool ||
+        cwi_memory_is_in_file(mesh->positions)) { /* its vertices are not compared */
         loss->step_mm = fmax(loss->step_mm, step_of(part));
         return CW_OK;
     }

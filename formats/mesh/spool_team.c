@@ -3,7 +3,7 @@
 #define _GNU_SOURCE /* linkat of an open file */
 #include "core/base/memory.h"
 #include "core/base/status.h"
-#include "core/base/temporary_name.h"
+#include "core/files/temporary_name.h"
 #include "core/geometry/box.h"
 #include "formats/mesh/mesh_spool.h"
 

@@ -4,9 +4,9 @@
 #include "core/base/memory.h"
 #include "core/base/status.h"
 #include "core/base/text.h"
+#include "core/base/unnamed_file.h"
 #include "core/mesh/component_front.h"
 #include "formats/mesh/mesh_spool.h"
-#include "formats/mesh/unnamed_file.h"
 
 #include <math.h>
 #include <string.h>

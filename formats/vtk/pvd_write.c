@@ -2,8 +2,8 @@
 #define _GNU_SOURCE /* realpath */
 #include <cubewright/formats.h>
 
-#include "core/base/atomic_file.h"
 #include "core/base/status.h"
+#include "core/files/atomic_file.h"
 #include "formats/text/number_format.h"
 #include "formats/text/xml.h"
 

@@ -4,7 +4,7 @@
 #include "core/base/memory.h"
 #include "core/base/status.h"
 #include "core/base/text.h"
-#include "formats/mesh/unnamed_file.h"
+#include "core/base/unnamed_file.h"
 #include "formats/vtkhdf/vtkhdf_file.h"
 
 #include <fcntl.h>

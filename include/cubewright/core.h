@@ -95,6 +95,33 @@ CW_API void cw_memory_limit(size_t bytes);
 /* Returns the number of bytes that arrays take now. */
 CW_API size_t cw_memory_used(void);
 
+/* Where arrays beyond the limit go. Zero-initialise it and set what you need. */
+typedef struct cw_overflow_desc {
+    uint32_t version; /* 0: the first version of this struct */
+    const char
+        *path; /* temporary files without a name stand in the folder of this path; copied */
+    /* Called once, on any thread, before the first array goes to a file: with the bytes that
+     * are known to follow. Default: none */
+    void (*report)(void *user, size_t bytes);
+    void *user; /* passed to report */
+} cw_overflow_desc;
+
+/* Lets large arrays overflow into temporary files where those of all calls exceed cw_memory_limit(), in place of
+ * CW_ERR_NO_MEMORY. The files are mapped to memory, and end with their arrays or the process. Then half of
+ * the limit is for large arrays in memory. The rest holds small ones, and pages of the files, which are
+ * dropped when they exceed what is left. Room on the disk is reserved before it is used: a full disk is
+ * CW_ERR_OUTPUT where it is foreseen, else CW_ERR_NO_MEMORY with the folder's name. Results have the same bytes.
+ *
+ * Sweeps over arrays are fast where they go from one end to the other, as in cw_extract_labels(). Others may
+ * take long. Forked processes make no files. With cw_allocator_set(), such arrays do not come from that.
+ *
+ * desc     borrowed; NULL, or without a path: no more arrays go to files; those that did stay there
+ * Returns  CW_ERR_OUTPUT  the folder cannot be written; CW_ERR_NO_MEMORY */
+CW_NODISCARD CW_API cw_status cw_memory_overflow(const cw_overflow_desc *desc, cw_error *err);
+
+/* Returns the number of bytes of arrays that are in files now. cw_memory_used() does not count them. */
+CW_API size_t cw_memory_overflowed(void);
+
 /* An allocator of the caller's, instead of malloc() and free(). Both functions are called from
  * any thread, also in the sandboxed processes that readers fork. */
 typedef struct cw_allocator {

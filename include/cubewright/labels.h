@@ -98,7 +98,7 @@ CW_NODISCARD CW_API cw_status cw_extract_labels(const cw_volume *volume,
  * source   borrowed; at least 1 voxel along each axis
  * Returns  as cw_extract_labels(); or what source returned
  * Cost     memory: 32 MiB of slices, or 19 if those are more; 22 bytes a thread for each voxel of a
- *          slice; the surfaces */
+ *          slice; the surfaces, whose arrays may go to files with cw_memory_overflow() */
 CW_NODISCARD CW_API cw_status cw_extract_labels_stream(const cw_slice_source *source,
                                                        const cw_labels_desc *desc,
                                                        cw_label_surfaces *surfaces,

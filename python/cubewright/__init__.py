@@ -36,7 +36,7 @@ from ._extract import (
 from ._handles import Closed, close_handles
 from ._label_scores import extract_label_scores
 from ._library import lib as _lib
-from ._memory import memory_limit, memory_used
+from ._memory import memory_limit, memory_overflow, memory_overflowed, memory_used
 from ._mesh import Mesh
 from ._orient import Oriented, Stand, orient_print
 from ._pieces import Piece, Pieces, cut_pieces
@@ -117,6 +117,8 @@ __all__ = [
     "make",
     "measure_within",
     "memory_limit",
+    "memory_overflow",
+    "memory_overflowed",
     "memory_used",
     "offset",
     "orient_print",

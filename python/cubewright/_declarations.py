@@ -446,6 +446,21 @@ cw_progress._fields_ = [
 ]
 
 
+class cw_overflow_desc(Structure):
+    version: int
+    path: bytes | None
+    report: Any
+    user: Any
+
+
+cw_overflow_desc._fields_ = [
+    ("version", c_uint32),
+    ("path", c_char_p),
+    ("report", CFUNCTYPE(None, c_void_p, c_size_t)),
+    ("user", c_void_p),
+]
+
+
 class cw_allocator(Structure):
     allocate: Any
     release: Any
@@ -4315,6 +4330,8 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "cw_version": (c_char_p, []),
     "cw_memory_limit": (None, [c_size_t]),
     "cw_memory_used": (c_size_t, []),
+    "cw_memory_overflow": (c_int, [POINTER(cw_overflow_desc), POINTER(cw_error)]),
+    "cw_memory_overflowed": (c_size_t, []),
     "cw_allocator_set": (c_int, [POINTER(cw_allocator), POINTER(cw_error)]),
     "cw_status_exit_code": (c_int, [c_int]),
     "cw_status_name": (c_char_p, [c_int]),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ctypes
+import os
 import weakref
 from collections.abc import Callable
 from typing import Any, Generic, TypeVar
@@ -10,8 +11,10 @@ from typing import Any, Generic, TypeVar
 import numpy as np
 import numpy.typing as npt
 
+from . import _declarations as c
+from ._errors import call
 from ._library import lib
-from ._options import take_count
+from ._options import take_count, take_path
 
 
 S = TypeVar("S", bound=ctypes.Structure)
@@ -71,6 +74,22 @@ def memory_limit(bytes: int) -> None:
     0 means no limit. Only Linux counts.
     """
     lib.cw_memory_limit(take_count("bytes", bytes))
+
+
+def memory_overflow(path: str | os.PathLike[str] | None) -> None:
+    """Lets large arrays beyond memory_limit() go to temporary files in the folder of a path; None: no longer.
+
+    The files have no names, and end with their arrays or the process. Results have the same bytes.
+    """
+    desc = c.cw_overflow_desc()
+    if path is not None:
+        desc.path = take_path("path", path)
+    call(lib.cw_memory_overflow, ctypes.byref(desc))
+
+
+def memory_overflowed() -> int:
+    """Returns the bytes of arrays that are in temporary files now."""
+    return int(lib.cw_memory_overflowed())
 
 
 def unpack(struct: ctypes.Structure) -> dict[str, Any]:

@@ -502,6 +502,25 @@ class Mistakes(Case):
         finally:
             cw.memory_limit(0)
 
+    def test_arrays_beyond_the_limit_overflow_into_files(self):
+        cells = cw.make("labels/cells", dims=80, labels=300, type="u16")
+        whole = cw.extract_labels(cells)
+        cw.memory_limit(cw.memory_used() + (6 << 20))
+        cw.memory_overflow(self.folder / "x.ply")
+        try:
+            surfaces = cw.extract_labels(cells)
+            self.assertGreater(cw.memory_overflowed(), 0)
+        finally:
+            cw.memory_overflow(None)
+            cw.memory_limit(0)
+        np.testing.assert_array_equal(surfaces.shared.triangles, whole.shared.triangles)
+        np.testing.assert_array_equal(surfaces.shared.vertices, whole.shared.vertices)
+        del surfaces
+        gc.collect()
+        self.assertEqual(cw.memory_overflowed(), 0)
+        with self.fails(cw.Status.OUTPUT, "no/such"):
+            cw.memory_overflow("no/such/x")
+
     def test_no_surface_is_a_mesh_without_triangles(self):
         mesh = cw.extract(np.zeros((4, 4, 4), "f4"), 1)
         self.assertEqual((len(mesh.vertices), len(mesh.triangles)), (0, 0))

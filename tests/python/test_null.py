@@ -111,7 +111,7 @@ class Null(Case):
                 self.assertEqual(int(status), Status.ARGUMENT, line)
                 self.assertIn("NULL", message, line)
             else:
-                self.assertIn(name, ("cw_allocator_set", "cw_pipeline_check", "cw_team_agree"), line)
+                self.assertIn(name, ("cw_allocator_set", "cw_memory_overflow", "cw_pipeline_check", "cw_team_agree"), line)
 
 
 if __name__ == "__main__":

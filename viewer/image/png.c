@@ -1,9 +1,9 @@
 /* Writes images of bytes as PNG files by libpng. */
 #include <cubewright/picture.h>
 
-#include "core/base/atomic_file.h"
 #include "core/base/memory.h"
 #include "core/base/status.h"
+#include "core/files/atomic_file.h"
 
 #include <png.h>
 #include <setjmp.h>

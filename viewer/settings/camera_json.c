@@ -1,9 +1,9 @@
 /* Reads and writes cameras as JSON, by the schema "cubewright-camera-1". */
 #include <cubewright/camera.h>
 
-#include "core/base/atomic_file.h"
 #include "core/base/status.h"
 #include "core/base/text.h"
+#include "core/files/atomic_file.h"
 #include "viewer/settings/json.h"
 
 #include <stdio.h>

@@ -2,10 +2,10 @@
 #define _GNU_SOURCE /* fmemopen */
 #include "viewer/settings/transfer_json.h"
 
-#include "core/base/atomic_file.h"
 #include "core/base/memory.h"
 #include "core/base/status.h"
 #include "core/base/text.h"
+#include "core/files/atomic_file.h"
 #include "viewer/settings/json.h"
 
 #include <math.h>

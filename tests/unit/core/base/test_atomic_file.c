@@ -3,8 +3,8 @@
 #define _GNU_SOURCE /* mkfifo, symlink, setrlimit, syscall */
 #include "support/support.h"
 
-#include "core/base/atomic_file.h"
 #include "core/base/memory.h"
+#include "core/files/atomic_file.h"
 
 #include <errno.h>
 #include <fcntl.h>

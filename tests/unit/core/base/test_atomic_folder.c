@@ -3,10 +3,10 @@
 #define _GNU_SOURCE /* symlink */
 #include "support/support.h"
 
-#include "core/base/atomic_file.h"
-#include "core/base/atomic_folder.h"
 #include "core/base/memory.h"
 #include "core/base/status.h"
+#include "core/files/atomic_file.h"
+#include "core/files/atomic_folder.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,12 +1,15 @@
 /* Temporary files without a name, which end with the process. */
-#ifndef FORMATS_MESH_UNNAMED_FILE_H
-#define FORMATS_MESH_UNNAMED_FILE_H
+#ifndef CORE_BASE_UNNAMED_FILE_H
+#define CORE_BASE_UNNAMED_FILE_H
 
 #include <cubewright/core.h>
 
 #ifdef __cplusplus
 extern "C" {
 #endif
+
+/* Returns the folder of a path, "." where it names none. NULL when memory is out; free it with cwi_free(). */
+char *cwi_folder_of(const char *path);
 
 /* Opens an empty file in a folder, to be closed with close(). *file is -1 on failure.
  * Returns CW_ERR_OUTPUT, CW_ERR_NO_MEMORY */

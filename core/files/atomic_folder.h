@@ -1,6 +1,6 @@
 /* Folders that appear at their path only when they are complete. */
-#ifndef CORE_BASE_ATOMIC_FOLDER_H
-#define CORE_BASE_ATOMIC_FOLDER_H
+#ifndef CORE_FILES_ATOMIC_FOLDER_H
+#define CORE_FILES_ATOMIC_FOLDER_H
 
 #include <cubewright/core.h>
 

@@ -1,13 +1,13 @@
 /* Writes files through a hidden temporary beside the target, which a rename puts in place once
  * it is complete. */
 #define _GNU_SOURCE /* renameat2 */
-#include "core/base/atomic_file.h"
+#include "core/files/atomic_file.h"
 
-#include "core/base/atomic_folder.h"
 #include "core/base/memory.h"
 #include "core/base/status.h"
-#include "core/base/temporary_name.h"
 #include "core/base/text.h"
+#include "core/files/atomic_folder.h"
+#include "core/files/temporary_name.h"
 
 #include <errno.h>
 #include <fcntl.h>

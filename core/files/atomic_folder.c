@@ -1,12 +1,12 @@
 /* Writes folders through a hidden one beside the target, which takes the target's place once it
  * is complete. */
 #define _GNU_SOURCE /* renameat2, SYS_getdents64 */
-#include "core/base/atomic_folder.h"
+#include "core/files/atomic_folder.h"
 
 #include "core/base/memory.h"
 #include "core/base/status.h"
-#include "core/base/temporary_name.h"
 #include "core/base/text.h"
+#include "core/files/temporary_name.h"
 
 #include <dirent.h>
 #include <errno.h>

@@ -1,6 +1,6 @@
 /* Opens the folder of a path that is written, and names the hidden temporary in it. */
 #define _GNU_SOURCE /* getrandom, O_PATH */
-#include "core/base/temporary_name.h"
+#include "core/files/temporary_name.h"
 
 #include "core/base/status.h"
 

@@ -1,6 +1,6 @@
 /* Opens, writes and reads temporary files that have no name. */
 #define _GNU_SOURCE /* O_TMPFILE */
-#include "formats/mesh/unnamed_file.h"
+#include "core/base/unnamed_file.h"
 
 #include "core/base/memory.h"
 #include "core/base/status.h"
@@ -10,6 +10,17 @@
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
+
+char *cwi_folder_of(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    if (!slash)
+        return cwi_strdup(".");
+    char *folder = cwi_strdup(path);
+    if (folder)
+        folder[slash == path ? 1 : slash - path] = '\0';
+    return folder;
+}
 
 cw_status cwi_unnamed_open(const char *folder, int *file, cw_error *err)
 {

@@ -1,6 +1,6 @@
 /* Files that appear at their path only when they are complete. */
-#ifndef CORE_BASE_ATOMIC_FILE_H
-#define CORE_BASE_ATOMIC_FILE_H
+#ifndef CORE_FILES_ATOMIC_FILE_H
+#define CORE_FILES_ATOMIC_FILE_H
 
 #include <cubewright/core.h>
 

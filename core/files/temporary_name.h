@@ -1,6 +1,6 @@
 /* The folder of a path that is written, and the name of the hidden temporary in it. */
-#ifndef CORE_BASE_TEMPORARY_NAME_H
-#define CORE_BASE_TEMPORARY_NAME_H
+#ifndef CORE_FILES_TEMPORARY_NAME_H
+#define CORE_FILES_TEMPORARY_NAME_H
 
 #include <cubewright/core.h>
 
