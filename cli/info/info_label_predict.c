@@ -168,6 +168,7 @@ static void predict_cost(const predictor *p)
     out->memory_bytes =
         (size_t)((double)p->desc->program_bytes + (p->volume->streams ? SLICES : voxels) +
                  surface_bytes(counts));
+    out->is_beyond = out->memory_bytes > cli_memory_limit(p->desc->input);
     out->seconds = p->desc->read_seconds + 2 * p->count_seconds +
                    p->surface_rate * (double)counts->triangles +
                    p->mesh_rate * (double)counts->own_triangles;
@@ -251,8 +252,9 @@ void cli_print_label_prediction(const cli_label_prediction *p)
            p->list, cli_count(p->counts.labels), p->counts.labels == 1 ? "" : "s",
            cli_count(p->counts.own_triangles), cli_count(p->counts.triangles));
     printf("    file     STL %s\n", cli_bytes((double)p->stl_bytes));
-    printf("    memory   about %s%s\n", cli_bytes((double)p->memory_bytes),
-           p->is_streamed ? ", with voxels slice by slice" : "");
+    printf("    memory   about %s%s%s\n", cli_bytes((double)p->memory_bytes),
+           p->is_streamed ? ", with voxels slice by slice" : "",
+           p->is_beyond ? "; as --memory is less, surfaces go to temporary files" : "");
     printf("    time     about %.*f s, and writing\n", p->seconds < 10 ? 1 : 0, p->seconds);
 }
 
@@ -270,6 +272,7 @@ void cli_json_label_prediction(cli_json *j, const cli_label_prediction *p)
     cli_json_count(j, "stl_bytes", p->stl_bytes);
     cli_json_count(j, "memory_bytes", p->memory_bytes);
     cli_json_bool(j, "streamed", p->is_streamed);
+    cli_json_bool(j, "overflows", p->is_beyond);
     cli_json_number(j, "seconds", p->seconds);
     cli_json_close(j, '}');
 }

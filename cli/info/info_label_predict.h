@@ -15,6 +15,7 @@ typedef struct cli_label_prediction {
     size_t stl_bytes;           /* exact */
     size_t memory_bytes;        /* of the program, about */
     bool is_streamed;           /* voxels are more than --memory allows */
+    bool is_beyond;             /* so are the surfaces: they go to temporary files */
     double seconds;             /* about; without waiting for the disk to write */
 } cli_label_prediction;
 

@@ -23,7 +23,7 @@ cubewright info negative.nrrd | grep -e label -e level
 # what is predicted is what extract makes: all in memory, some labels, a part of the rows, slice by slice
 cubewright make labels/cells -o cells.nrrd --dims 40x44x36 --type u16 --labels 30 -q
 predict() { # FILE OPTIONS...
-    cubewright info "$@" --json | sed -n 's/^ *"\(labels\|triangles\|shared_triangles\|streamed\)": \([0-9a-z]*\),$/\1 \2/p'
+    cubewright info "$@" --json | sed -n 's/^ *"\(labels\|triangles\|shared_triangles\|streamed\|overflows\)": \([0-9a-z]*\),$/\1 \2/p'
 }
 predict cells.nrrd --labels all
 cubewright extract cells.nrrd --labels all -o cells.stl -q --no-check
@@ -34,6 +34,7 @@ echo "extract $((($(wc -c <some.stl) - 84) / 50))"
 cubewright info cells.nrrd --labels all | tail -4
 cubewright make labels/cells -o large.nrrd --dims 256x256x700 --type u8 --labels 30 -q
 predict large.nrrd --labels all --memory 64M
+cubewright info large.nrrd --labels all --memory 64M | sed -n 's/^ *memory//p'
 cubewright info cells.nrrd --labels 99 || echo "exit $?"
 cubewright info cells.nrrd --labels Liver || echo "exit $?"
 cubewright make gyroid -o gyroid.nrrd --dims 20 -q
