@@ -35,7 +35,7 @@ CW_NODISCARD cw_status cwi_label_scores_open(cwi_label_scores *f, const cw_label
 void cwi_label_scores_close(cwi_label_scores *f);
 
 /* The field of a label without one: the background's value, or its rest. */
-enum { CWI_NO_FIELD = UINT32_MAX };
+#define CWI_NO_FIELD UINT32_MAX
 
 /* Finds the field of a label of the map. */
 uint32_t cwi_label_score_of(const cwi_label_scores *f, uint32_t label);
