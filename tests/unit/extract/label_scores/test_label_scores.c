@@ -11,15 +11,14 @@
 
 enum { MOST = 5 };
 
-static const char *const kinds[] = {"noise",     "smooth",   "ties",
-                                    "quantised", "one is 0", "one voxel"};
-enum { KINDS = sizeof kinds / sizeof *kinds };
+/* Kinds of fields. */
+enum { NOISE, SMOOTH, TIES, QUANTISED, ONE_IS_0, ONE_VOXEL, KINDS };
 
 /* Fills `count` fields of a kind. */
 static void fill_fields(cw_volume fields[MOST], int count, const size_t dim[3], int kind)
 {
     cw_error err = {0};
-    const cw_type type = kind == 3 ? CW_U8 : CW_F32;
+    const cw_type type = kind == QUANTISED ? CW_U8 : CW_F32;
     double waves[MOST][4];
     for (int n = 0; n < count; n++) {
         assert_ok(cw_volume_alloc(&fields[n], type, dim, 1, 1, &err), err);
@@ -32,12 +31,12 @@ static void fill_fields(cw_volume fields[MOST], int count, const size_t dim[3], 
                          z = (double)(i / dim[0] / dim[1]), noise = rand() / (double)RAND_MAX;
             const double wave = 0.5 + 0.5 * sin(waves[n][0] * x + waves[n][3] * 10) *
                                           cos(waves[n][1] * y) * cos(waves[n][2] * z + n);
-            double value = kind == 0 || kind == 3 ? noise : wave;
-            if (kind == 2)
+            double value = kind == NOISE || kind == QUANTISED ? noise : wave;
+            if (kind == TIES)
                 value = n < 2 ? 0.75 : rint(2 * wave) / 2;
-            if (kind == 4)
+            if (kind == ONE_IS_0)
                 value = n == 1 ? 0 : 0.8 * wave + 0.2 * noise;
-            if (kind == 5 && n == 2)
+            if (kind == ONE_VOXEL && n == 2)
                 value = i == dim[0] * dim[1] + dim[0] + 1 ? 1 : 0;
             cwi_voxel_put(type, (char *)cw_volume_voxels(&fields[n]) + i * cw_type_size(type),
                           type == CW_U8 ? 6 * value : value);
