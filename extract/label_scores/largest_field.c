@@ -215,11 +215,11 @@ static void find_layer(void *context, size_t z)
     const cw_volume *map = &f->map;
     const size_t count = map->dim[0];
     double *memory = cwi_alloc_array(count, 4 * sizeof *memory);
-    const rows r = {memory, memory + count, memory + 2 * count, memory + 3 * count};
     if (!memory) {
         cwi_set_flag(&s->is_starved);
         return;
     }
+    const rows r = {memory, memory + count, memory + 2 * count, memory + 3 * count};
     for (size_t y = 0; y < map->dim[1]; y++) {
         const size_t first = (z * map->dim[1] + y) * count, size = cw_type_size(map->type);
         compare_fields(f, y, z, &r);
