@@ -40,14 +40,14 @@ CW_NODISCARD cw_status cwi_file_arrays_open(cwi_file_arrays *files, const char *
 /* Returns true if arrays can be made. */
 bool cwi_file_arrays_are_open(const cwi_file_arrays *files);
 
-/* Makes an array of zeros, on a page's boundary, whose room on the disk is reserved. Returns NULL, and
- * sets *error to a number of errno, when there is none. */
+/* Makes an array of zeros, on a page's boundary, whose room on the disk is reserved. When the disk has
+ * no room, it returns NULL and sets *error to a number of errno. */
 void *cwi_file_array_new(cwi_file_arrays *files, size_t bytes, int *error);
 
-/* Frees an array. Returns false, and does nothing, for memory that is none of them. */
+/* Frees an array. Returns false, and does nothing, for memory that is not in a file. */
 bool cwi_file_array_free(cwi_file_arrays *files, const void *memory);
 
-/* Returns the size of an array; 0 for memory that is none of them. */
+/* Returns the size of an array; 0 for memory that is not in a file. */
 size_t cwi_file_array_size(cwi_file_arrays *files, const void *memory);
 
 /* Leaves all arrays to their files if more than max_resident() bytes of them are in memory. They are read

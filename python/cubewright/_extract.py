@@ -526,6 +526,19 @@ def resample_labels(
     return sampled
 
 
+def set_labels(desc: c.cw_labels_desc, values: list[int]) -> None:
+    """Sets the labels that are wanted."""
+    if not values:
+        raise ValueError("labels is empty; None stands for all")
+    desc.labels, desc.label_count = (c_uint32 * len(values))(*values), len(values)
+
+
+def set_max_move(desc: c.cw_labels_desc, name: str, value: float) -> None:
+    """Sets how far vertices may move, from the parameter of a name; 0: not at all."""
+    desc.max_move = take_length(name, value)
+    desc.no_smoothing = desc.max_move == 0
+
+
 def extract_labels(
     volume: AnyVolume,
     labels: Iterable[int] | None = None,
@@ -561,13 +574,9 @@ def extract_labels(
         progress=reporter.struct,
     )
     if labels is not None:
-        wanted = [find_value("a label", label, source.ids, values) for label in labels]
-        if not wanted:
-            raise ValueError("labels is empty; None stands for all")
-        desc.labels, desc.label_count = (c_uint32 * len(wanted))(*wanted), len(wanted)
+        set_labels(desc, [find_value("a label", label, source.ids, values) for label in labels])
     if smooth_labels is not None:
-        desc.max_move = take_length("smooth_labels", smooth_labels)
-        desc.no_smoothing = desc.max_move == 0
+        set_max_move(desc, "smooth_labels", smooth_labels)
     out = Owner(c.cw_label_surfaces(), lib.cw_label_surfaces_free)
     reporter.call(lib.cw_extract_labels, byref(view), byref(desc), byref(out.struct))
     return LabelSurfaces(out, source.ids)

@@ -9,10 +9,10 @@ from typing import Any, Union
 import numpy as np
 
 from . import _declarations as c
-from ._extract import AnyVolume, LabelSurfaces
+from ._extract import AnyVolume, LabelSurfaces, set_labels, set_max_move
 from ._library import lib
 from ._memory import Owner
-from ._options import take_count, take_flag, take_length, take_number, take_threads
+from ._options import take_count, take_flag, take_number, take_threads
 from ._progress import Progress, Reporter
 from ._volume import Volume, take_volume
 
@@ -90,13 +90,9 @@ def extract_label_scores(
         progress=reporter.struct,
     )
     if labels is not None:
-        wanted = [take_count("a label", label, 0, 2**32 - 1) for label in labels]
-        if not wanted:
-            raise ValueError("labels is empty; None stands for all")
-        desc.labels, desc.label_count = (c_uint32 * len(wanted))(*wanted), len(wanted)
+        set_labels(desc, [take_count("a label", label, 0, 2**32 - 1) for label in labels])
     if max_move is not None:
-        desc.max_move = take_length("max_move", max_move)
-        desc.no_smoothing = desc.max_move == 0
+        set_max_move(desc, "max_move", max_move)
     out = Owner(c.cw_label_surfaces(), lib.cw_label_surfaces_free)
     reporter.call(lib.cw_extract_label_scores, byref(scores), byref(desc), byref(out.struct))
     return LabelSurfaces(out, [])

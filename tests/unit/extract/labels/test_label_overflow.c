@@ -1,5 +1,5 @@
 /* Tests that surfaces of labels whose arrays overflow into files have the bytes of those in memory. */
-#include "support/support.h"
+#include "support/label_surfaces.h"
 
 #include "core/base/memory.h"
 
@@ -28,16 +28,6 @@ static void make_map(cw_volume *v, int kind)
         const size_t x = n % side / 2, y = n / side % side / 2, z = n / side / side / 2;
         to[n] = kind == 1 ? (uint32_t)rand() % 6 : (x + y + z) % 2 ? 1 + (uint32_t)(x / 4) : 0;
     }
-}
-
-static void assert_same(const cw_label_surfaces *a, const cw_label_surfaces *b)
-{
-    assert_int_equal(a->mesh.vertex_count, b->mesh.vertex_count);
-    assert_int_equal(a->mesh.triangle_count, b->mesh.triangle_count);
-    assert_memory_equal(a->mesh.triangles, b->mesh.triangles, 12 * a->mesh.triangle_count);
-    assert_memory_equal(a->mesh.positions, b->mesh.positions, 12 * a->mesh.vertex_count);
-    assert_int_equal(a->patch_count, b->patch_count);
-    assert_memory_equal(a->patches, b->patches, a->patch_count * sizeof *a->patches);
 }
 
 static void begin_overflow(size_t limit)
@@ -85,7 +75,7 @@ static void surfaces_in_files_are_the_same(void **state)
             assert_ok(cw_extract_labels(&v, &desc, &got, &err), err);
             assert_true(cwi_memory_is_in_file(got.mesh.triangles));
             end_overflow();
-            assert_same(&got, &whole);
+            test_assert_same_labels(&got, &whole);
             compare_labels(&got, &whole);
             cw_label_surfaces_free(&got);
             assert_int_equal(cw_memory_overflowed(), 0);
