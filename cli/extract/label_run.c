@@ -336,7 +336,7 @@ static cw_status measure_item(const cli_label_run *r, cli_label_item *item,
                               const cw_pipeline_surface *surface, cw_error *err)
 {
     const cw_mesh_distance_desc desc = {.threads = (int)r->args->input.threads};
-    cw_mesh_comparison c;
+    cw_mesh_comparison c = {0};
     item->max_error_mm = item->rms_error_mm = NAN;
     if (!surface->full)
         return CW_OK;
