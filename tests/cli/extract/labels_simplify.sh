@@ -11,6 +11,13 @@ if cubewright version --features | grep -q '^simplify *yes'; then
     cubewright extract cells.nrrd --labels all --simplify 4k --per-label -o apart.ply >line
     grep -o 'each label by itself: interfaces of neighbours part' line
 fi
+# a label's rms is that of its file beside the file before simplification, both ways
+cubewright extract cells.nrrd --labels 3 -o full.ply -q
+cubewright extract cells.nrrd --labels 3 --simplify 300 --table table.csv -o small.ply -q
+cubewright check small.ply --reference full.ply --json check.json -q
+awk -F, '/"rms"/ { sub(".*: ", ""); sum += $1 * $1 } FILENAME != "check.json" && FNR == 2 { wanted = $NF }
+    END { rms = sqrt(sum / 2); print (rms - wanted) ^ 2 < 1e-10 ? "rms agrees" : rms " " wanted }' \
+    check.json table.csv
 # levels of detail: a file each, and one with all
 cubewright extract cells.nrrd --labels all --lod 4k,1k -o lod.obj --name x --json lod.json
 ls lod*
