@@ -1,12 +1,20 @@
 /* Writes the records of a mesh to a file: vertices, triangles, lines of text. */
+#include "core/base/memory.h"
+#include "core/base/parallel.h"
 #include "core/base/status.h"
+#include "core/base/thread_pool.h"
 #include "formats/mesh/place_parts.h"
 #include "formats/text/number_format.h"
 
 #include <float.h>
 #include <stdio.h>
 
-enum { PROGRESS_STEP = 65536, BATCH_BYTES = 16 << 10 };
+enum { BATCH_RECORDS = 512, BATCHES = 4 }; /* BATCHES: for each thread */
+
+static size_t least(size_t a, size_t b)
+{
+    return a < b ? a : b;
+}
 
 static cw_status drain_bytes(const cwi_mesh_output *out, const void *bytes, size_t size,
                              cw_error *err)
@@ -15,22 +23,60 @@ static cw_status drain_bytes(const cwi_mesh_output *out, const void *bytes, size
                       : cwi_outfile_write(out->file, bytes, size, err);
 }
 
-/* Encodes `count` records of a part in memory. */
+/* Batches of records that threads encode at the same time; they are written one after the other. */
+typedef struct batches {
+    const cwi_part *part;
+    cwi_record_encoder *encode;
+    size_t first, count; /* records of all batches */
+    unsigned char *bytes;
+    size_t *sizes; /* of each batch, encoded */
+} batches;
+
+static void encode_batch(void *context, size_t n)
+{
+    const batches *b = context;
+    const size_t first = n * BATCH_RECORDS, end = least(first + BATCH_RECORDS, b->count);
+    unsigned char *begin = b->bytes + n * BATCH_RECORDS * CWI_RECORD_BYTES, *to = begin;
+    for (size_t i = first; i < end; i++)
+        to = b->encode(b->part, b->first + i, to);
+    b->sizes[n] = (size_t)(to - begin);
+}
+
+static cw_status write_batches(const batches *b, cwi_mesh_output *out, cw_error *err)
+{
+    enum { WORTH = 1 << 19 }; /* each is worth a thread */
+    const size_t number = (b->count + BATCH_RECORDS - 1) / BATCH_RECORDS;
+    cw_status st = CW_OK;
+    cwi_parallel_for_all(number, WORTH, 0, encode_batch, (void *)b);
+    for (size_t n = 0; n < number && st == CW_OK; n++)
+        st =
+            drain_bytes(out, b->bytes + n * BATCH_RECORDS * CWI_RECORD_BYTES, b->sizes[n], err);
+    out->done += b->count;
+    return st == CW_OK ? cwi_progress(out->progress, "writing",
+                                      (double)out->done / (double)out->total, err)
+                       : st;
+}
+
+/* Encodes `count` records of a part in memory, some batches a thread at a time. */
 static cw_status write_held(const cwi_part *part, cwi_mesh_output *out,
                             cwi_record_encoder *encode, size_t count, cw_error *err)
 {
-    unsigned char batch[BATCH_BYTES], *to = batch;
+    const size_t all = (count + BATCH_RECORDS - 1) / BATCH_RECORDS;
+    const size_t number = least(all, BATCHES * (size_t)cwi_threads(0));
+    batches b = {.part = part, .encode = encode};
     cw_status st = CW_OK;
-    for (size_t i = 0; i < count && st == CW_OK; i++) {
-        to = encode(part, i, to);
-        if (to > batch + BATCH_BYTES - CWI_RECORD_BYTES || i + 1 == count) {
-            st = drain_bytes(out, batch, (size_t)(to - batch), err);
-            to = batch;
-        }
-        if (st == CW_OK && out->done++ % PROGRESS_STEP == 0)
-            st = cwi_progress(out->progress, "writing", (double)out->done / (double)out->total,
-                              err);
+    if (count == 0)
+        return CW_OK;
+    b.bytes = cwi_alloc_array(number, BATCH_RECORDS * CWI_RECORD_BYTES);
+    b.sizes = cwi_alloc_array(number, sizeof *b.sizes);
+    if (!b.bytes || !b.sizes)
+        st = cwi_fail_memory(err);
+    for (; b.first < count && st == CW_OK; b.first += b.count) {
+        b.count = least(number * BATCH_RECORDS, count - b.first);
+        st = write_batches(&b, out, err);
     }
+    cwi_free(b.bytes);
+    cwi_free(b.sizes);
     return st;
 }
 
