@@ -9,10 +9,8 @@
 /* A writer of blocks. A zeroed one is closed. */
 typedef struct cwi_block_sink {
     cwi_outfile *file; /* borrowed */
-    z_stream z;
-    bool deflates;
-    unsigned char *block, *packed; /* one block, plain and compressed */
-    size_t packed_capacity, held;  /* bytes of the block so far */
+    struct cwi_block *blocks; /* some for each thread, compressed at the same time */
+    size_t capacity, full, held; /* of them: all, full ones; bytes in the next */
     unsigned char *table;          /* of the current array */
     size_t table_bytes, count, next;
     uint64_t table_at;
