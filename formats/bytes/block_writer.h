@@ -8,10 +8,10 @@
 
 /* A writer of blocks. A zeroed one is closed. */
 typedef struct cwi_block_sink {
-    cwi_outfile *file; /* borrowed */
-    struct cwi_block *blocks; /* some for each thread, compressed at the same time */
+    cwi_outfile *file;           /* borrowed */
+    struct cwi_block *blocks;    /* some for each thread, compressed at the same time */
     size_t capacity, full, held; /* of them: all, full ones; bytes in the next */
-    unsigned char *table;          /* of the current array */
+    unsigned char *table;        /* of the current array */
     size_t table_bytes, count, next;
     uint64_t table_at;
 } cwi_block_sink;

@@ -3,7 +3,9 @@
 #include "formats/bytes/inflate_stream.h"
 
 #include "core/base/memory.h"
+#include "core/base/read_ahead.h"
 #include "core/base/status.h"
+#include "core/base/thread_pool.h"
 #include "formats/bytes/bzip2.h"
 #include "formats/bytes/input_file.h"
 #include "formats/bytes/isal.h"
@@ -32,16 +34,26 @@ void cwi_zlib_use_memory(z_stream *z)
     z->zfree = zlib_free;
 }
 
+/* Makes the buffer of compressed bytes, and zlib's struct, which may not move. */
+static bool open_buffer(cwi_stream *s)
+{
+    s->buffer = cwi_alloc_array(BUFFER_BYTES, 1);
+    s->z = cwi_alloc_zeroed(1, sizeof *s->z);
+    if (!s->buffer || !s->z)
+        return false;
+    cwi_zlib_use_memory(s->z);
+    s->z->next_in = s->buffer;
+    return true;
+}
+
 cw_status cwi_stream_open(cwi_stream *s, int fd, uint64_t offset, bool deflated, cw_error *err)
 {
     *s = (cwi_stream){.fd = fd, .offset = offset, .end = UINT64_MAX};
     if (!deflated)
         return CW_OK;
-    cwi_zlib_use_memory(&s->z);
-    s->z.next_in = s->buffer = cwi_alloc_array(BUFFER_BYTES, 1);
     const int ZLIB_OR_GZIP = 32; /* zlib or gzip, by the header found */
-    s->deflated = s->buffer && cwi_isal_open(&s->isal) &&
-                  (s->isal || inflateInit2(&s->z, MAX_WBITS + ZLIB_OR_GZIP) == Z_OK);
+    s->deflated = open_buffer(s) && cwi_isal_open(&s->isal) &&
+                  (s->isal || inflateInit2(s->z, MAX_WBITS + ZLIB_OR_GZIP) == Z_OK);
     if (s->deflated)
         return CW_OK;
     cwi_stream_close(s);
@@ -53,9 +65,7 @@ cw_status cwi_stream_open_bare(cwi_stream *s, int fd, uint64_t offset, uint32_t 
 {
     *s = (cwi_stream){
         .fd = fd, .offset = offset, .end = UINT64_MAX, .is_bare = true, .expected_crc = crc};
-    cwi_zlib_use_memory(&s->z);
-    s->z.next_in = s->buffer = cwi_alloc_array(BUFFER_BYTES, 1);
-    s->deflated = s->buffer && inflateInit2(&s->z, -MAX_WBITS) == Z_OK;
+    s->deflated = open_buffer(s) && inflateInit2(s->z, -MAX_WBITS) == Z_OK;
     if (s->deflated)
         return CW_OK;
     cwi_stream_close(s);
@@ -69,8 +79,7 @@ cw_status cwi_stream_open_bzip2(cwi_stream *s, int fd, uint64_t offset, cw_error
         return cwi_fail(err, CW_ERR_UNSUPPORTED,
                         "the data are compressed with bzip2; this build has no libbz2 "
                         "(libbz2-dev, CUBEWRIGHT_BZIP2)");
-    s->z.next_in = s->buffer = cwi_alloc_array(BUFFER_BYTES, 1);
-    s->deflated = s->buffer && cwi_bzip2_open(&s->bzip2);
+    s->deflated = open_buffer(s) && cwi_bzip2_open(&s->bzip2);
     if (s->deflated)
         return CW_OK;
     cwi_stream_close(s);
@@ -95,12 +104,30 @@ cw_status cwi_stream_from_hex(cwi_stream *s, cw_error *err)
     return s->text ? CW_OK : cwi_fail_memory(err);
 }
 
+/* A stream that a thread inflates. The reader's own says how much it has taken. */
+struct cwi_stream_ahead {
+    cwi_stream stream;
+    cwi_ahead *bytes;
+};
+
+/* Ends the thread; the stream is then where the thread has come to. */
+static void join_ahead(cwi_stream *s)
+{
+    struct cwi_stream_ahead *a = s->ahead;
+    cwi_ahead_stop(a->bytes);
+    *s = a->stream;
+    cwi_free(a);
+}
+
 void cwi_stream_close(cwi_stream *s)
 {
+    if (s->ahead)
+        join_ahead(s);
     if (s->deflated && !s->isal && !s->bzip2)
-        inflateEnd(&s->z);
+        inflateEnd(s->z);
     cwi_bzip2_close(s->bzip2);
     cwi_free(s->isal);
+    cwi_free(s->z);
     cwi_free(s->buffer);
     cwi_free(s->text);
     *s = (cwi_stream){.fd = -1};
@@ -191,12 +218,12 @@ static cw_status fetch_bytes(cwi_stream *s, void *to, size_t size, size_t *got, 
  * given back. */
 static cw_status refill_input(cwi_stream *s, size_t *got, cw_error *err)
 {
-    const size_t used = (size_t)(s->z.next_in - s->buffer);
-    const size_t kept = used < AHEAD_BYTES ? used : AHEAD_BYTES, held = kept + s->z.avail_in;
-    memmove(s->buffer, s->z.next_in - kept, held);
-    s->z.next_in = s->buffer + kept;
+    const size_t used = (size_t)(s->z->next_in - s->buffer);
+    const size_t kept = used < AHEAD_BYTES ? used : AHEAD_BYTES, held = kept + s->z->avail_in;
+    memmove(s->buffer, s->z->next_in - kept, held);
+    s->z->next_in = s->buffer + kept;
     cw_status st = fetch_bytes(s, s->buffer + held, BUFFER_BYTES - held, got, err);
-    s->z.avail_in += (uInt)*got;
+    s->z->avail_in += (uInt)*got;
     return st;
 }
 
@@ -207,13 +234,13 @@ static cw_status check_padding(cwi_stream *s, cw_error *err)
     size_t got = 1;
     cw_status st = CW_OK;
     while (st == CW_OK && got > 0) {
-        for (; s->z.avail_in > 0; s->z.avail_in--, s->z.next_in++)
-            if (*s->z.next_in)
+        for (; s->z->avail_in > 0; s->z->avail_in--, s->z->next_in++)
+            if (*s->z->next_in)
                 return cwi_fail(
                     err, CW_ERR_FORMAT,
                     "byte %llu of the file is behind the end of the compressed data "
                     "and not zero",
-                    (unsigned long long)(s->offset - s->z.avail_in));
+                    (unsigned long long)(s->offset - s->z->avail_in));
         st = refill_input(s, &got, err);
     }
     return st;
@@ -226,11 +253,11 @@ static cw_status start_next_member(cwi_stream *s, cw_error *err)
     const char *magic = s->bzip2 ? "BZh" : "\x1f\x8b";
     const size_t size = strlen(magic);
     size_t got;
-    cw_status st = s->z.avail_in < size ? refill_input(s, &got, err) : CW_OK;
-    s->ended = s->is_bare || s->z.avail_in < size || memcmp(s->z.next_in, magic, size) != 0;
-    s->packed_end = s->offset - s->z.avail_in;
+    cw_status st = s->z->avail_in < size ? refill_input(s, &got, err) : CW_OK;
+    s->ended = s->is_bare || s->z->avail_in < size || memcmp(s->z->next_in, magic, size) != 0;
+    s->packed_end = s->offset - s->z->avail_in;
     if (st == CW_OK && !s->ended && !s->isal && !s->bzip2)
-        inflateReset(&s->z);
+        inflateReset(s->z);
     return st;
 }
 
@@ -240,7 +267,7 @@ static cw_status fail_inflate(const cwi_stream *s, int code, cw_error *err)
         return cwi_fail_memory(err);
     return cwi_fail(err, CW_ERR_FORMAT, "the compressed data are damaged after %llu bytes: %s",
                     (unsigned long long)(s->given),
-                    s->z.msg              ? s->z.msg
+                    s->z->msg             ? s->z->msg
                     : code == Z_NEED_DICT ? "a dictionary is asked for"
                                           : "no progress");
 }
@@ -252,25 +279,25 @@ static cw_status inflate_some(cwi_stream *s, unsigned char *to, size_t size, siz
     const uInt max = 1 << 30;
     size_t fetched = 0;
     *got = 0;
-    if (s->z.avail_in == 0) {
+    if (s->z->avail_in == 0) {
         cw_status st = refill_input(s, &fetched, err);
         if (st != CW_OK)
             return st;
     }
-    const uInt input = s->z.avail_in;
-    s->z.next_out = to;
-    s->z.avail_out = size < max ? (uInt)size : max;
-    const uInt output = s->z.avail_out;
-    const int code = s->bzip2  ? cwi_bzip2_inflate(s->bzip2, &s->z)
-                     : s->isal ? cwi_isal_inflate(s->isal, &s->z)
-                               : inflate(&s->z, Z_NO_FLUSH);
-    *got = output - s->z.avail_out;
+    const uInt input = s->z->avail_in;
+    s->z->next_out = to;
+    s->z->avail_out = size < max ? (uInt)size : max;
+    const uInt output = s->z->avail_out;
+    const int code = s->bzip2  ? cwi_bzip2_inflate(s->bzip2, s->z)
+                     : s->isal ? cwi_isal_inflate(s->isal, s->z)
+                               : inflate(s->z, Z_NO_FLUSH);
+    *got = output - s->z->avail_out;
     s->given += *got;
     if (s->is_bare)
         s->crc = (uint32_t)crc32_z(s->crc, to, *got);
     if (code == Z_STREAM_END)
         return start_next_member(s, err);
-    const bool stuck = *got == 0 && s->z.avail_in == input;
+    const bool stuck = *got == 0 && s->z->avail_in == input;
     if ((code == Z_OK || code == Z_BUF_ERROR) && !(stuck && input))
         s->ended = s->truncated = stuck;
     else
@@ -285,15 +312,46 @@ static cw_status read_plain(cwi_stream *s, void *to, size_t size, size_t *got, c
     return st;
 }
 
-cw_status cwi_stream_some(cwi_stream *s, void *to, size_t size, size_t *got, cw_error *err)
+static cw_status inflate_all(void *stream, void *to, size_t size, size_t *got, cw_error *err)
 {
-    if (!s->deflated)
-        return read_plain(s, to, size, got, err);
+    cwi_stream *s = stream;
     cw_status st = CW_OK;
     size_t n;
     for (*got = 0; st == CW_OK && *got < size && !s->ended; *got += n)
         st = inflate_some(s, (unsigned char *)to + *got, size - *got, &n, err);
     return st;
+}
+
+void cwi_stream_inflate_ahead(cwi_stream *s)
+{
+    struct cwi_stream_ahead *a = NULL;
+    if (!s->deflated || s->ended || s->ahead || cwi_threads(0) < 2)
+        return;
+    a = cwi_alloc_zeroed(1, sizeof *a);
+    if (!a)
+        return;
+    a->stream = *s;
+    a->bytes = cwi_ahead_start(inflate_all, &a->stream);
+    if (a->bytes)
+        s->ahead = a;
+    else
+        cwi_free(a);
+}
+
+static cw_status take_ahead(cwi_stream *s, void *to, size_t size, size_t *got, cw_error *err)
+{
+    const cw_status st = cwi_ahead_take(s->ahead->bytes, to, size, got, err);
+    s->given += *got;
+    if (st == CW_OK && *got < size)
+        join_ahead(s);
+    return st;
+}
+
+cw_status cwi_stream_some(cwi_stream *s, void *to, size_t size, size_t *got, cw_error *err)
+{
+    return s->ahead      ? take_ahead(s, to, size, got, err)
+           : s->deflated ? inflate_all(s, to, size, got, err)
+                         : read_plain(s, to, size, got, err);
 }
 
 cw_status cwi_stream_read(cwi_stream *s, void *to, size_t size, cw_error *err)

@@ -25,13 +25,14 @@ typedef struct cwi_stream {
     uint64_t packed_end; /* ... else where they end in the file */
     void *isal;          /* ISA-L's state, in place of zlib; NULL: zlib inflates */
     void *bzip2;         /* the same for bzip2 data */
-    z_stream z;
+    z_stream *z;
     unsigned char *buffer; /* compressed bytes, the input of z */
     char *text;            /* text to be decoded; NULL: the file holds plain bytes */
     size_t text_next, text_size;
     cwi_base64 base64;
-    bool is_hex;    /* the text is hexadecimal, not base64 */
-    bool has_digit; /* ... and the first digit of a byte was read: high */
+    struct cwi_stream_ahead *ahead; /* a thread inflates, into buffers; NULL: the reader does */
+    bool is_hex;                    /* the text is hexadecimal, not base64 */
+    bool has_digit;                 /* ... and the first digit of a byte was read: high */
     unsigned char high;
 } cwi_stream;
 
@@ -62,6 +63,10 @@ CW_NODISCARD cw_status cwi_stream_open_bzip2(cwi_stream *s, int fd, uint64_t off
 void cwi_stream_end_at(cwi_stream *s, uint64_t end);
 CW_NODISCARD cw_status cwi_stream_from_base64(cwi_stream *s, cw_error *err);
 CW_NODISCARD cw_status cwi_stream_from_hex(cwi_stream *s, cw_error *err);
+
+/* Lets a thread of its own inflate what follows, ahead of the reader; the stream is set up by then.
+ * Does nothing for plain bytes, where one thread was requested, and where none can be had. */
+void cwi_stream_inflate_ahead(cwi_stream *s);
 
 /* Reads up to size bytes; *got is less only at the end.
  * Returns CW_ERR_FORMAT for damaged data or a wrong checksum, CW_ERR_IO. */

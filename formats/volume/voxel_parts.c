@@ -10,7 +10,7 @@
 #include <stdio.h>
 #include <unistd.h>
 
-enum { SLAB_BYTES = 1 << 20 };
+enum { SLAB_BYTES = 1 << 20, WORTH_BYTES = 4 << 20 }; /* WORTH_BYTES: decoded, worth a thread */
 
 const char *cwi_source_noun(const cwi_source *src)
 {
@@ -122,6 +122,8 @@ cw_status cwi_part_open_stream(const cwi_source *src, const cwi_part_file *p,
         st = cwi_stream_from_base64(stream, err);
     if (src->encoding == CWI_HEX)
         st = cwi_stream_from_hex(stream, err);
+    if (st == CW_OK && stored_part_bytes(src) >= WORTH_BYTES)
+        cwi_stream_inflate_ahead(stream);
     if (st == CW_OK)
         st = cwi_stream_skip(stream, decoded_skip(src), err);
     if (st == CW_OK && src->encoding == CWI_BLOCKS)

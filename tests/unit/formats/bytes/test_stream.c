@@ -1,5 +1,6 @@
 /* Tests byte streams: gzip, zlib and base64 text, damage, tails, and skipping. */
 #define _GNU_SOURCE /* memfd_create */
+#include "core/base/thread_pool.h"
 #include "formats/bytes/inflate_stream.h"
 #include "support/files/reading.h"
 
@@ -28,11 +29,22 @@ static int make_file(const void *bytes, size_t size)
     return fd;
 }
 
+static bool is_ahead; /* a thread of its own inflates */
+
+static cw_status open_stream(cwi_stream *s, int fd, uint64_t offset, bool deflated,
+                             cw_error *err)
+{
+    const cw_status st = cwi_stream_open(s, fd, offset, deflated, err);
+    if (st == CW_OK && is_ahead)
+        cwi_stream_inflate_ahead(s);
+    return st;
+}
+
 static cw_status read_all(int fd, uint64_t offset, bool deflated, unsigned char *to,
                           size_t size, cw_error *err)
 {
     cwi_stream s = {0};
-    cw_status st = cwi_stream_open(&s, fd, offset, deflated, err);
+    cw_status st = open_stream(&s, fd, offset, deflated, err);
     for (size_t done = 0; st == CW_OK && done < size; done += 1000)
         st = cwi_stream_read(&s, to + done, size - done < 1000 ? size - done : 1000, err);
     if (st == CW_OK)
@@ -231,7 +243,7 @@ static void mutants_are_taken_as_zlib_takes_them(void **state)
         const int fd = make_file(packed, packed_size);
         cwi_stream s = {0};
         cw_error err = {0};
-        assert_ok(cwi_stream_open(&s, fd, 0, true, &err), err);
+        assert_ok(open_stream(&s, fd, 0, true, &err), err);
         cw_status st = CW_OK;
         for (size_t n = 1; st == CW_OK && n && got < sizeof back; got += n)
             st = cwi_stream_some(&s, back + got, 1 + round % 7000, &n, &err);
@@ -264,7 +276,7 @@ static void base64_text_gives_its_bytes(void **state)
         cw_error err = {0};
         cwi_stream s = {0};
         const int fd = make_file(text, sizeof text - 1);
-        assert_ok(cwi_stream_open(&s, fd, 0, false, &err), err);
+        assert_ok(open_stream(&s, fd, 0, false, &err), err);
         assert_ok(cwi_stream_from_base64(&s, &err), err);
         for (; got > 0; done += got) {
             const size_t room = sizeof back - done;
@@ -296,7 +308,7 @@ static void what_is_no_base64_is_told_by_its_place(void **state)
         cw_error err = {0};
         cwi_stream s = {0};
         const int fd = make_file(cases[i].text, strlen(cases[i].text));
-        assert_ok(cwi_stream_open(&s, fd, 0, false, &err), err);
+        assert_ok(open_stream(&s, fd, 0, false, &err), err);
         assert_ok(cwi_stream_from_base64(&s, &err), err);
         assert_fails(cwi_stream_read(&s, back, 6, &err), CW_ERR_FORMAT, cases[i].words, err);
         cwi_stream_close(&s);
@@ -312,7 +324,7 @@ static void nothing_behind_its_end_is_read(void **state)
     cw_error err = {0};
     cwi_stream s = {0};
     const int fd = make_file("abcdef", 6);
-    assert_ok(cwi_stream_open(&s, fd, 1, false, &err), err);
+    assert_ok(open_stream(&s, fd, 1, false, &err), err);
     cwi_stream_end_at(&s, 3);
     assert_ok(cwi_stream_some(&s, back, 4, &got, &err), err);
     assert_int_equal(got, 2);
@@ -399,6 +411,8 @@ static void what_is_no_part_of_the_stream_is_not_judged(void **state)
     const int fd = make_file(packed, size + 1);
     assert_ok(cwi_stream_open(&s, fd, 0, true, &err), err);
     cwi_stream_end_at(&s, size);
+    if (is_ahead)
+        cwi_stream_inflate_ahead(&s);
     assert_ok(cwi_stream_read(&s, back, 500, &err), err);
     assert_ok(cwi_stream_finish(&s, &err), err);
     cwi_stream_close(&s);
@@ -446,7 +460,7 @@ static void skipping_lands_where_reading_would(void **state)
         cwi_stream s;
         unsigned char *packed = deflated ? pack_bytes(plain, SIZE, true, &size) : NULL;
         const int fd = make_file(packed ? packed : plain, size);
-        assert_ok(cwi_stream_open(&s, fd, 0, deflated, &err), err);
+        assert_ok(open_stream(&s, fd, 0, deflated, &err), err);
         assert_ok(cwi_stream_skip(&s, 123456, &err), err);
         assert_ok(cwi_stream_read(&s, back, sizeof back, &err), err);
         assert_memory_equal(back, plain + 123456, sizeof back);
@@ -460,7 +474,7 @@ static void skipping_lands_where_reading_would(void **state)
 static void a_stream_without_memory_says_so(void **state)
 {
     (void)state;
-    for (long n = 0; n < 2; n++) {
+    for (long n = 0; n < 3; n++) {
         cwi_stream s;
         cw_error err = {0};
         cwi_alloc_fail_after(n);
@@ -491,5 +505,12 @@ int main(void)
         cmocka_unit_test(a_stream_without_memory_says_so),
     };
     fill_plain();
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    cwi_set_default_threads(2);
+    int failed = 0;
+    for (int n = 0; n < 2; n++) {
+        is_ahead = n;
+        failed |=
+            cmocka_run_group_tests_name(n ? "inflated ahead" : "inflated", tests, NULL, NULL);
+    }
+    return failed;
 }
