@@ -4,6 +4,7 @@
 
 #include "core/base/memory.h"
 #include "core/base/status.h"
+#include "core/geometry/vec3.h"
 
 #include <float.h>
 #include <stdlib.h>
@@ -48,20 +49,34 @@ static unsigned exit_axis(unsigned rank)
 /* Hilbert's curve visits the octants of a cube in the order of a Gray code. In each octant the
  * curve is the same, but mirrored (entry, 0 to 7) and turned (axis, 0 to 2), so that it begins
  * beside the end of the one before [Hamilton2006]. A cube is known by 8 axis + entry. */
+typedef struct octant_step {
+    uint8_t rank, cube; /* the octant's rank, and how it is mirrored and turned */
+} octant_step;
+
+static octant_step find_octant(unsigned cube, unsigned octant)
+{
+    const unsigned entry = cube % 8, axis = cube / 8, turn = (axis + 1) % 3;
+    const unsigned rank = gray_rank(rotate_left(octant ^ entry, (3 - turn) % 3));
+    const unsigned inner = entry ^ rotate_left(entry_corner(rank), turn);
+    return (octant_step){(uint8_t)rank,
+                         (uint8_t)(8 * ((turn + exit_axis(rank)) % 3) + inner)};
+}
+
+/* Two steps at a time, by cube and by two bits of x, of y and of z. */
 typedef struct hilbert {
-    uint8_t rank[24][8]; /* by cube and octant: the octant's rank */
-    uint8_t cube[24][8]; /* by cube and octant: how the octant is mirrored and turned */
+    octant_step steps[24][64];
 } hilbert;
 
 static void make_curve(hilbert *h)
 {
     for (unsigned cube = 0; cube < 24; cube++)
-        for (unsigned octant = 0; octant < 8; octant++) {
-            const unsigned entry = cube % 8, axis = cube / 8, turn = (axis + 1) % 3;
-            const unsigned rank = gray_rank(rotate_left(octant ^ entry, (3 - turn) % 3));
-            const unsigned inner = entry ^ rotate_left(entry_corner(rank), turn);
-            h->rank[cube][octant] = (uint8_t)rank;
-            h->cube[cube][octant] = (uint8_t)(8 * ((turn + exit_axis(rank)) % 3) + inner);
+        for (unsigned bits = 0; bits < 64; bits++) {
+            const octant_step outer = find_octant(cube, (bits >> 1 & 1) | (bits >> 2 & 2) |
+                                                            (bits >> 3 & 4)),
+                              inner = find_octant(outer.cube, (bits & 1) | (bits >> 1 & 2) |
+                                                                  (bits >> 2 & 4));
+            h->steps[cube][bits] =
+                (octant_step){(uint8_t)(outer.rank << 3 | inner.rank), inner.cube};
         }
 }
 
@@ -69,11 +84,12 @@ static uint64_t find_rank(const hilbert *h, const uint32_t cell[3])
 {
     unsigned cube = 0;
     uint64_t rank = 0;
-    for (int bit = KEY_BITS - 1; bit >= 0; bit--) {
-        const unsigned octant =
-            (cell[0] >> bit & 1) | (cell[1] >> bit & 1) << 1 | (cell[2] >> bit & 1) << 2;
-        rank = rank << 3 | h->rank[cube][octant];
-        cube = h->cube[cube][octant];
+    for (int bit = KEY_BITS - 2; bit >= 0; bit -= 2) {
+        const unsigned bits = (cell[0] >> bit & 3) | (cell[1] >> bit & 3) << 2 |
+                              (cell[2] >> bit & 3) << 4;
+        const octant_step step = h->steps[cube][bits];
+        rank = rank << 6 | step.rank;
+        cube = step.cube;
     }
     return rank;
 }
@@ -81,7 +97,9 @@ static uint64_t find_rank(const hilbert *h, const uint32_t cell[3])
 /* Returns twice the middle of a box along an axis; of a box that is endless, of its part within all numbers. */
 static double find_middle(const float box[6], int a)
 {
-    return fmax((double)box[a], (double)-FLT_MAX) + fmin((double)box[a + 3], (double)FLT_MAX);
+    const float low = box[a] > -FLT_MAX ? box[a] : -FLT_MAX,
+                high = box[a + 3] < FLT_MAX ? box[a + 3] : FLT_MAX;
+    return (double)low + (double)high;
 }
 
 /* Sets each key: the rank of the box's middle on the curve through a cube of 2^16 cells an
@@ -93,10 +111,10 @@ static void set_keys(const float (*boxes)[6], size_t count, keyed *keys)
     make_curve(&curve);
     for (size_t n = 0; n < count; n++)
         for (int a = 0; a < 3; a++)
-            low[a] = fmin(low[a], find_middle(boxes[n], a));
+            low[a] = cwi_lesser(low[a], find_middle(boxes[n], a));
     for (size_t n = 0; n < count; n++)
         for (int a = 0; a < 3; a++)
-            high = fmax(high, find_middle(boxes[n], a) - low[a]);
+            high = cwi_greater(high, find_middle(boxes[n], a) - low[a]);
     const double scale = high > 0 ? ((1 << KEY_BITS) - 1) / high : 0;
     for (size_t n = 0; n < count; n++) {
         uint32_t cell[3];
@@ -114,25 +132,40 @@ static int compare_keyed(const void *x, const void *y)
                             : (a->item > b->item) - (a->item < b->item);
 }
 
-/* Radix-sorts by 16 bits of the key at a time; the order of equal keys is kept. Returns false
+enum { DIGIT_BITS = 12, DIGITS = 1 << DIGIT_BITS, PASSES = 3 * KEY_BITS / DIGIT_BITS };
+
+static unsigned get_digit(const keyed *k, int pass)
+{
+    return (unsigned)(k->key >> pass * DIGIT_BITS) & (DIGITS - 1);
+}
+
+/* Sets where the keys of each digit begin, for every pass. */
+static void find_starts(const keyed *keys, size_t count, uint32_t (*starts)[DIGITS])
+{
+    memset(starts, 0, PASSES * sizeof *starts);
+    for (size_t n = 0; n < count; n++)
+        for (int pass = 0; pass < PASSES; pass++)
+            starts[pass][get_digit(&keys[n], pass)]++;
+    for (int pass = 0; pass < PASSES; pass++)
+        for (uint32_t d = 0, sum = 0; d < DIGITS; d++) {
+            const uint32_t here = starts[pass][d];
+            starts[pass][d] = sum;
+            sum += here;
+        }
+}
+
+/* Radix-sorts by 12 bits of the key at a time; the order of equal keys is kept. Returns false
  * when memory is out. */
 static bool radix_sort_keys(keyed **keys, size_t count)
 {
-    enum { DIGITS = 1 << 16 };
     keyed *other = cwi_alloc_array(count, sizeof *other);
-    size_t *starts = cwi_alloc_array(DIGITS, sizeof *starts);
+    uint32_t(*starts)[DIGITS] = cwi_alloc_array(PASSES, sizeof *starts);
     const bool ok = other && starts;
-    for (int shift = 0; shift < 48 && ok; shift += 16) {
-        memset(starts, 0, DIGITS * sizeof *starts);
+    if (ok)
+        find_starts(*keys, count, starts);
+    for (int pass = 0; pass < PASSES && ok; pass++) {
         for (size_t n = 0; n < count; n++)
-            starts[(*keys)[n].key >> shift & (DIGITS - 1)]++;
-        for (size_t d = 0, sum = 0; d < DIGITS; d++) {
-            const size_t here = starts[d];
-            starts[d] = sum;
-            sum += here;
-        }
-        for (size_t n = 0; n < count; n++)
-            other[starts[(*keys)[n].key >> shift & (DIGITS - 1)]++] = (*keys)[n];
+            other[starts[pass][get_digit(&(*keys)[n], pass)]++] = (*keys)[n];
         keyed *sorted = other;
         other = *keys;
         *keys = sorted;
@@ -159,8 +192,8 @@ void cwi_boxes_around(const cwi_boxes_node *n, float box[6])
         box[a] = n->low[a][0];
         box[a + 3] = n->high[a][0];
         for (int c = 1; c < CWI_WIDTH; c++) {
-            box[a] = fminf(box[a], n->low[a][c]);
-            box[a + 3] = fmaxf(box[a + 3], n->high[a][c]);
+            box[a] = n->low[a][c] < box[a] ? n->low[a][c] : box[a];
+            box[a + 3] = n->high[a][c] > box[a + 3] ? n->high[a][c] : box[a + 3];
         }
     }
 }
@@ -190,8 +223,10 @@ static void fill_boxes(cwi_boxes *t, const float (*boxes)[6])
         children = (children + CWI_WIDTH - 1) / CWI_WIDTH;
     }
     for (size_t n = 0; n < t->count; n++)
-        for (int a = 0; a < 6; a++)
-            t->max = fmaxf(t->max, fabsf(boxes[n][a]));
+        for (int a = 0; a < 6; a++) {
+            const float magnitude = fabsf(boxes[n][a]);
+            t->max = magnitude > t->max ? magnitude : t->max;
+        }
 }
 
 /* Lays out the levels; returns the number of nodes. */
