@@ -212,6 +212,22 @@ static bool strangers_are_parted(const plan *p)
            (turn_b && edge_parts(p->b, turn_b, p->a));
 }
 
+enum { LEFT = 1, RIGHT = 2 };
+
+/* Returns on which side of the ray from v through p the point q is. A point straight behind v counts
+ * as on both sides; 0 where rounding might decide. */
+static int find_ray_side(const double p[2], const double q[2], const double v[2])
+{
+    const int turn = find_turn(p, q, v);
+    if (turn)
+        return turn > 0 ? LEFT : RIGHT;
+    for (int x = 0; x < 2; x++) /* both are exactly on a line along axis x */
+        if (p[1 - x] == v[1 - x] && q[1 - x] == v[1 - x] &&
+            ((p[x] < v[x] && q[x] > v[x]) || (p[x] > v[x] && q[x] < v[x])))
+            return LEFT | RIGHT;
+    return 0;
+}
+
 /* Decides for triangles with corner k of a and corner j of b in common: a line along one of the four
  * sides that begin there has its own triangle on one side, and the other triangle on the other. */
 static bool wedges_are_parted(const plan *p, int k, int j)
@@ -219,13 +235,14 @@ static bool wedges_are_parted(const plan *p, int k, int j)
     const double *v = p->a[k], *a[2] = {p->a[(k + 1) % 3], p->a[(k + 2) % 3]},
                  *b[2] = {p->b[(j + 1) % 3], p->b[(j + 2) % 3]};
     const int turn_a = find_turn(a[0], a[1], v), turn_b = find_turn(b[0], b[1], v);
-    int turn[2][2]; /* from the sides of a to those of b, if both triangles turn counter-clockwise */
+    int side[2][2]; /* of the sides of b from those of a, if both triangles turn counter-clockwise */
+    if (!turn_a || !turn_b)
+        return false;
     for (int m = 0; m < 2; m++)
         for (int n = 0; n < 2; n++)
-            turn[turn_a < 0 ? 1 - m : m][turn_b < 0 ? 1 - n : n] = find_turn(a[m], b[n], v);
-    const bool a_0 = turn[0][0] < 0 && turn[0][1] < 0, a_1 = turn[1][0] > 0 && turn[1][1] > 0,
-               b_0 = turn[0][0] > 0 && turn[1][0] > 0, b_1 = turn[0][1] < 0 && turn[1][1] < 0;
-    return turn_a && turn_b && (a_0 || a_1 || b_0 || b_1);
+            side[m][n] = find_ray_side(a[turn_a < 0 ? 1 - m : m], b[turn_b < 0 ? 1 - n : n], v);
+    return (side[0][0] & side[0][1] & RIGHT) || (side[1][0] & side[1][1] & LEFT) ||
+           (side[0][0] & side[1][0] & LEFT) || (side[0][1] & side[1][1] & RIGHT);
 }
 
 /* Decides for triangles with an edge in common, by their third corners. */
