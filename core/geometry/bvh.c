@@ -58,8 +58,7 @@ static octant_step find_octant(unsigned cube, unsigned octant)
     const unsigned entry = cube % 8, axis = cube / 8, turn = (axis + 1) % 3;
     const unsigned rank = gray_rank(rotate_left(octant ^ entry, (3 - turn) % 3));
     const unsigned inner = entry ^ rotate_left(entry_corner(rank), turn);
-    return (octant_step){(uint8_t)rank,
-                         (uint8_t)(8 * ((turn + exit_axis(rank)) % 3) + inner)};
+    return (octant_step){(uint8_t)rank, (uint8_t)(8 * ((turn + exit_axis(rank)) % 3) + inner)};
 }
 
 /* Two steps at a time, by cube and by two bits of x, of y and of z. */
@@ -85,8 +84,8 @@ static uint64_t find_rank(const hilbert *h, const uint32_t cell[3])
     unsigned cube = 0;
     uint64_t rank = 0;
     for (int bit = KEY_BITS - 2; bit >= 0; bit -= 2) {
-        const unsigned bits = (cell[0] >> bit & 3) | (cell[1] >> bit & 3) << 2 |
-                              (cell[2] >> bit & 3) << 4;
+        const unsigned bits =
+            (cell[0] >> bit & 3) | (cell[1] >> bit & 3) << 2 | (cell[2] >> bit & 3) << 4;
         const octant_step step = h->steps[cube][bits];
         rank = rank << 6 | step.rank;
         cube = step.cube;

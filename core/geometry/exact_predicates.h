@@ -23,7 +23,8 @@ int cwi_seen_along(const float a[3], const float b[3], const float c[3]);
 /* Returns 1 when points p, q, r of a plane turn counter-clockwise, -1 when clockwise, and 0 when
  * rounding might decide, or they lie on one line. Coordinates are numbers of single precision: their
  * products cannot under- or overflow. */
-static inline int cwi_sure_turn(double px, double py, double qx, double qy, double rx, double ry)
+static inline int cwi_sure_turn(double px, double py, double qx, double qy, double rx,
+                                double ry)
 {
     const double unit = DBL_EPSILON / 2, error_factor = (3 + 16 * unit) * unit;
     const double left = (px - rx) * (qy - ry), right = (py - ry) * (qx - rx),

@@ -83,9 +83,8 @@ static bool meet_node(void *context, size_t other)
         unsigned unproved = cwi_find_unproved(mine, &v->planes, i - first, theirs,
                                               other == v->node ? &v->planes : &planes, near);
         for (; unproved; unproved &= unproved - 1)
-            cwi_test_pair(
-                v->s, v->to, tree->order[i],
-                tree->order[other * CWI_WIDTH + (size_t)__builtin_ctz(unproved)]);
+            cwi_test_pair(v->s, v->to, tree->order[i],
+                          tree->order[other * CWI_WIDTH + (size_t)__builtin_ctz(unproved)]);
     }
     v->to->cut = v->to->work > v->to->max_work;
     return !v->to->cut && !v->to->failed;

@@ -235,7 +235,9 @@ static bool wedges_are_parted(const plan *p, int k, int j)
     const double *v = p->a[k], *a[2] = {p->a[(k + 1) % 3], p->a[(k + 2) % 3]},
                  *b[2] = {p->b[(j + 1) % 3], p->b[(j + 2) % 3]};
     const int turn_a = find_turn(a[0], a[1], v), turn_b = find_turn(b[0], b[1], v);
-    int side[2][2]; /* of the sides of b from those of a, if both triangles turn counter-clockwise */
+    int side
+        [2]
+        [2]; /* of the sides of b from those of a, if both triangles turn counter-clockwise */
     if (!turn_a || !turn_b)
         return false;
     for (int m = 0; m < 2; m++)
