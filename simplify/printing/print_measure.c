@@ -174,9 +174,10 @@ static cw_status measure_walls(const cw_mesh *mesh, const uint32_t *map,
                                cw_error *err)
 {
     cwi_wall_sum walls, gaps;
-    float *wall = cwi_alloc_array(mesh->triangle_count, sizeof *wall),
-          *gap = cwi_alloc_array(mesh->triangle_count, sizeof *gap);
-    cw_status st = wall && gap ? CW_OK : cwi_fail_memory(err);
+    float *wall = limits->wall ? cwi_alloc_array(mesh->triangle_count, sizeof *wall) : NULL,
+          *gap = limits->gap ? cwi_alloc_array(mesh->triangle_count, sizeof *gap) : NULL;
+    const bool ok = (wall || !limits->wall) && (gap || !limits->gap);
+    cw_status st = ok ? CW_OK : cwi_fail_memory(err);
     if (st == CW_OK)
         st = cwi_measure_walls(mesh, limits, wall, gap, &walls, &gaps, err);
     if (st == CW_OK) {

@@ -48,8 +48,9 @@ typedef struct ray_field {
     const cw_mesh *mesh;
     const cw_print_desc *limits;
     cwi_boxes tree;
-    float *normals; /* vertices x 3; 0 where there is none */
-    float *wall, *gap;
+    float *normals;             /* vertices x 3; 0 where there is none */
+    float *wall, *gap;          /* of each triangle; may be NULL */
+    bool seeks_thinnest;        /* nothing but the thinnest wall of each part */
     cwi_wall_sum *walls, *gaps; /* of each part */
     double step;                /* between points, mm */
     bool shares_points;         /* triangles lower than a step share points */
@@ -93,9 +94,11 @@ static bool visit_triangle(void *context, size_t slot)
 
 /* Returns the length of a ray to the surface, up to `max_reach`, or INFINITY: where it meets none, or where
  * the surface does not face it. Looks near by first, as long rays meet many boxes.
- * side  1: the ray leaves the solid there; -1: it enters */
+ * side      1: the ray leaves the solid there; -1: it enters
+ * relevant  longer results do not matter: INFINITY may stand for them */
 static double cast_ray(const ray_field *f, size_t own, const double from[3],
-                       const double direction[3], double side, double first, double max_reach)
+                       const double direction[3], double side, double first, double max_reach,
+                       double relevant)
 {
     ray r = {.field = f, .own = own, .hit = SIZE_MAX};
     memcpy(r.from, from, sizeof r.from);
@@ -114,19 +117,20 @@ static double cast_ray(const ray_field *f, size_t own, const double from[3],
                                                             cos(FACING_DEG * CWI_PI / 180);
             return faces ? r.fraction * reach : INFINITY;
         }
-        if (reach >= max_reach)
+        if (reach >= max_reach || reach >= relevant)
             return INFINITY;
     }
 }
 
 /* --- a point ------------------------------------------------------------------------------ */
 
-/* Returns the wall or gap at a point. direction: unit, into it */
+/* Returns the wall or gap at a point. direction: unit, into it; the rest as of cast_ray() */
 static double measure_point(const ray_field *f, size_t own, const double from[3],
                             const double direction[3], double side, double limit,
-                            double max_reach)
+                            double max_reach, double relevant)
 {
-    double length_mm = cast_ray(f, own, from, direction, side, REACH * limit, max_reach);
+    double length_mm =
+        cast_ray(f, own, from, direction, side, REACH * limit, max_reach, relevant);
     if (!(length_mm < REACH * limit))
         return length_mm;
     double across[2][3];
@@ -138,8 +142,8 @@ static double measure_point(const ray_field *f, size_t own, const double from[3]
         for (int a = 0; a < 3; a++)
             d[a] = along * direction[a] +
                    off * (cos(turn) * across[0][a] + sin(turn) * across[1][a]);
-        length_mm =
-            cwi_lesser(length_mm, cast_ray(f, own, from, d, side, length_mm, length_mm));
+        length_mm = cwi_lesser(length_mm,
+                               cast_ray(f, own, from, d, side, length_mm, length_mm, INFINITY));
     }
     return length_mm;
 }
@@ -231,6 +235,15 @@ static point_grid divide_triangle(const ray_field *f, size_t triangle, const dou
     return g;
 }
 
+/* Returns the length beyond which walls do not matter: where a triangle's wall is not requested, and
+ * some are thinner. */
+static double find_relevant_wall(const ray_field *f, const cwi_wall_sum *walls)
+{
+    return f->wall             ? INFINITY
+           : f->seeks_thinnest ? walls->min_mm
+                               : REACH * f->limits->min_wall_mm;
+}
+
 static void measure_triangle(ray_field *f, size_t triangle, cwi_wall_sum *walls,
                              cwi_wall_sum *gaps)
 {
@@ -257,23 +270,29 @@ static void measure_triangle(ray_field *f, size_t triangle, cwi_wall_sum *walls,
             for (int a = 0; a < 3; a++)
                 inward[a] = -normal[a];
             const double wall = measure_point(f, triangle, at, inward, 1, limits->min_wall_mm,
-                                              f->diagonal),
-                         gap = measure_point(f, triangle, at, normal, -1, limits->min_gap_mm,
-                                             REACH * limits->min_gap_mm);
+                                              f->diagonal, find_relevant_wall(f, walls));
             add_measure(walls, wall, limits->min_wall_mm, at, area);
-            add_measure(gaps, gap, limits->min_gap_mm, at, area);
             min_mm[0] = cwi_lesser(min_mm[0], wall);
+            if (f->seeks_thinnest)
+                continue;
+            const double gap = measure_point(f, triangle, at, normal, -1, limits->min_gap_mm,
+                                             REACH * limits->min_gap_mm, INFINITY);
+            add_measure(gaps, gap, limits->min_gap_mm, at, area);
             min_mm[1] = cwi_lesser(min_mm[1], gap);
         }
     }
-    f->wall[triangle] = (float)min_mm[0];
-    f->gap[triangle] = (float)min_mm[1];
+    if (f->wall)
+        f->wall[triangle] = (float)min_mm[0];
+    if (f->gap)
+        f->gap[triangle] = (float)min_mm[1];
 }
 
 static void measure_part(void *context, size_t k)
 {
     ray_field *f = context;
-    f->walls[k] = f->gaps[k] = (cwi_wall_sum){.min_mm = INFINITY};
+    f->walls[k] = (cwi_wall_sum){.min_mm = INFINITY};
+    if (!f->seeks_thinnest)
+        f->gaps[k] = f->walls[k];
     for (size_t t = k * PART; t < (k + 1) * PART && t < f->mesh->triangle_count; t++)
         measure_triangle(f, t, &f->walls[k], &f->gaps[k]);
 }
@@ -351,6 +370,32 @@ static void add_parts(const cwi_wall_sum *parts, size_t count, cwi_wall_sum *sum
     }
 }
 
+static cw_status measure_parts(ray_field *f, cw_error *err)
+{
+    return cwi_parallel_for(f->parts, 1 << 16, f->limits->threads, &f->limits->progress,
+                            "walls", measure_part, f, err);
+}
+
+/* Measures all parts. Where walls are not requested of each triangle, rays end where walls are thick;
+ * only if there are no others is the thinnest of those sought. */
+static cw_status measure_all(ray_field *f, cwi_wall_sum *walls, cwi_wall_sum *gaps,
+                             cw_error *err)
+{
+    prepare_points(f);
+    cw_status st = measure_parts(f, err);
+    if (st != CW_OK)
+        return st;
+    add_parts(f->gaps, f->parts, gaps);
+    add_parts(f->walls, f->parts, walls);
+    if (f->wall || walls->min_mm < INFINITY)
+        return CW_OK;
+    f->seeks_thinnest = true;
+    st = measure_parts(f, err);
+    if (st == CW_OK)
+        add_parts(f->walls, f->parts, walls);
+    return st;
+}
+
 cw_status cwi_measure_walls(const cw_mesh *mesh, const cw_print_desc *limits, float *wall,
                             float *gap, cwi_wall_sum *walls, cwi_wall_sum *gaps, cw_error *err)
 {
@@ -359,15 +404,8 @@ cw_status cwi_measure_walls(const cw_mesh *mesh, const cw_print_desc *limits, fl
     if (st == CW_OK && mesh->triangle_count)
         st = cwi_triangle_boxes_build(&f.tree, mesh->positions, mesh->vertex_count,
                                       mesh->triangles, mesh->triangle_count, err);
-    if (st == CW_OK) {
-        prepare_points(&f);
-        st = cwi_parallel_for(f.parts, 1 << 16, limits->threads, &limits->progress, "walls",
-                              measure_part, &f, err);
-    }
-    if (st == CW_OK) {
-        add_parts(f.walls, f.parts, walls);
-        add_parts(f.gaps, f.parts, gaps);
-    }
+    if (st == CW_OK)
+        st = measure_all(&f, walls, gaps, err);
     cwi_boxes_free(&f.tree);
     cwi_free(f.normals);
     cwi_free(f.walls);

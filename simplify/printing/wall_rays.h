@@ -15,7 +15,7 @@ typedef struct cwi_wall_sum {
 /* Measures at points spread over the surface.
  * mesh     welded
  * limits   with their defaults
- * wall     triangle_count: the thinnest wall of each, or INFINITY
+ * wall     triangle_count: the thinnest wall of each, or INFINITY; NULL: not requested, which is faster
  * gap      the same of gaps
  * walls, gaps  set
  * Returns  CW_ERR_NO_MEMORY; CW_ERR_CANCELLED */
