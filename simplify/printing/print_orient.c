@@ -37,7 +37,7 @@ typedef struct candidate {
 typedef struct search {
     const cw_mesh *mesh;
     cw_print_desc limits;
-    cwi_rest_body body; /* all vertices that triangles name, and the centre of mass */
+    cwi_rest_body body; /* vertices that triangles name, and the centre of mass */
     double steep, area, diagonal;
     normal_bin *bins;
     size_t bin_count;
@@ -351,6 +351,8 @@ static cw_status find_poses(search *s, cw_error *err)
     cw_status st = s->directions && s->poses ? CW_OK : cwi_fail_memory(err);
     if (st == CW_OK)
         st = cwi_rest_body_thin(&s->body, &few, err);
+    if (st == CW_OK)
+        st = cwi_rest_body_drop_inner(&s->body, s->limits.layer_mm, err);
     if (st == CW_OK) {
         cwi_parallel_for_all(DIRECTIONS / CHUNK, CHUNK * s->bin_count, s->limits.threads,
                              estimate_chunk, s);
