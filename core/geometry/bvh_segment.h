@@ -9,10 +9,11 @@
 typedef struct cwi_boxes_segment {
     float near[3], far[3]; /* the start, moved so that boxes are widened by the slack */
     float inverse[3];      /* of the vector, kept finite */
-    float reach;           /* the fraction of it that counts; a visitor may shorten it */
+    float begin, reach;    /* the fractions of it that count; a visitor may bring them nearer */
 } cwi_boxes_segment;
 
-/* slack  boxes are widened by it: far more than rounding moves the start */
+/* Begins at the point, and ends at the end of the vector.
+ * slack  boxes are widened by it: far more than rounding moves the start */
 static inline cwi_boxes_segment cwi_boxes_segment_of(const double from[3],
                                                      const double vector[3], float slack)
 {
@@ -61,9 +62,11 @@ static inline cwi_lanes cwi_lesser_lanes(cwi_lanes a, cwi_lanes b)
 /* Returns bit c for each box c of the node that the segment may meet. */
 static inline unsigned cwi_boxes_crossed(const cwi_boxes_node *n, const cwi_boxes_segment *s)
 {
-    cwi_lanes enter[2] = {{0}}, leave[2];
-    for (int half = 0; half < 2; half++)
+    cwi_lanes enter[2], leave[2];
+    for (int half = 0; half < 2; half++) {
+        enter[half] = (cwi_lanes){s->begin, s->begin, s->begin, s->begin};
         leave[half] = (cwi_lanes){s->reach, s->reach, s->reach, s->reach};
+    }
     for (int a = 0; a < 3; a++) {
         const bool rises = s->inverse[a] > 0;
         const float *first = rises ? n->low[a] : n->high[a],

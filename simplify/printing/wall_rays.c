@@ -7,10 +7,10 @@
 #include "core/base/status.h"
 #include "core/geometry/box.h"
 #include "core/geometry/bvh_segment.h"
-#include "core/geometry/triangle.h"
 #include "core/geometry/vec3.h"
 #include "core/mesh/mesh_triangle.h"
 #include "core/mesh/triangle_boxes.h"
+#include "simplify/printing/ray_lengths.h"
 
 #include <string.h>
 
@@ -24,9 +24,6 @@ static const double MAX_SLIVER_POINTS = 4;
 enum { AROUND = 6 };
 static const double OFF_DEG = 5;
 
-/* How near the end of a ray must be to facing it: sharper edges are no walls. */
-static const double FACING_DEG = 30;
-
 /* The normal of a point is that between the vertices' normals where all three agree with the
  * triangle; else there is an edge, and it is the triangle's. Thin triangles may face anywhere: those
  * lower than this fraction of their longest side need vertices that agree with each other. */
@@ -34,9 +31,6 @@ static const double SMOOTH_DEG = 30, THIN = 0.2;
 
 /* Triangles farther than this off the normals of all their vertices are not measured, either. */
 static const double ASTRAY_DEG = 60;
-
-/* Times the way to a hit: boxes up to there may hold one that is nearer, as rounding goes. */
-static const double BEYOND = 1 + 1e-5;
 
 /* In limits: the walls that get the rays around, and the widest gaps that are looked for. */
 static const double REACH = 4;
@@ -47,7 +41,7 @@ enum { PART = 1 << 10, MAX_PARTS = 1000 };
 typedef struct ray_field {
     const cw_mesh *mesh;
     const cw_print_desc *limits;
-    cwi_boxes tree;
+    cwi_ray_target target;
     float *normals;             /* vertices x 3; 0 where there is none */
     float *wall, *gap;          /* of each triangle; may be NULL */
     bool seeks_thinnest;        /* nothing but the thinnest wall of each part */
@@ -55,85 +49,20 @@ typedef struct ray_field {
     double step;                /* between points, mm */
     bool shares_points;         /* triangles lower than a step share points */
     double diagonal;
-    float slack;
     size_t parts;
 } ray_field;
 
-/* --- one ray ------------------------------------------------------------------------------ */
-
-typedef struct ray {
-    const ray_field *field;
-    size_t own; /* the triangle that it starts on */
-    double from[3], vector[3];
-    double fraction; /* of the vector, to the first hit so far */
-    cwi_boxes_segment segment;
-    size_t hit;
-} ray;
-
-static double meet_triangle(const ray *r, size_t triangle)
-{
-    double p[3][3];
-    cwi_mesh_corners(r->field->mesh, triangle, p);
-    return cwi_triangle_ray((const double(*)[3])p, r->from, r->vector);
-}
-
-static bool visit_triangle(void *context, size_t slot)
-{
-    ray *r = context;
-    const size_t triangle = r->field->tree.order[slot];
-    if (triangle == r->own)
-        return true;
-    const double fraction = meet_triangle(r, triangle);
-    if (fraction > 0 && fraction < r->fraction) {
-        r->fraction = fraction;
-        r->segment.reach = (float)cwi_lesser(1, BEYOND * fraction);
-        r->hit = triangle;
-    }
-    return true;
-}
-
-/* Returns the length of a ray to the surface, up to `max_reach`, or INFINITY: where it meets none, or where
- * the surface does not face it. Looks near by first, as long rays meet many boxes.
- * side      1: the ray leaves the solid there; -1: it enters
- * relevant  longer results do not matter: INFINITY may stand for them */
-static double cast_ray(const ray_field *f, size_t own, const double from[3],
-                       const double direction[3], double side, double first, double max_reach,
-                       double relevant)
-{
-    ray r = {.field = f, .own = own, .hit = SIZE_MAX};
-    memcpy(r.from, from, sizeof r.from);
-    for (double reach = cwi_lesser(first, max_reach);;
-         reach = cwi_lesser(4 * reach, max_reach)) {
-        for (int a = 0; a < 3; a++)
-            r.vector[a] = reach * direction[a];
-        r.segment = cwi_boxes_segment_of(r.from, r.vector, f->slack);
-        r.fraction = 1;
-        cwi_boxes_pierce(&f->tree, &r.segment, visit_triangle, &r);
-        if (r.hit != SIZE_MAX) {
-            double p[3][3], normal[3];
-            cwi_mesh_corners(f->mesh, r.hit, p);
-            cwi_triangle_normal(p[0], p[1], p[2], normal);
-            const bool faces = cwi_normalise(normal) && side * cwi_dot(normal, direction) >=
-                                                            cos(FACING_DEG * CWI_PI / 180);
-            return faces ? r.fraction * reach : INFINITY;
-        }
-        if (reach >= max_reach || reach >= relevant)
-            return INFINITY;
-    }
-}
-
 /* --- a point ------------------------------------------------------------------------------ */
 
-/* Returns the wall or gap at a point. direction: unit, into it; the rest as of cast_ray() */
-static double measure_point(const ray_field *f, size_t own, const double from[3],
-                            const double direction[3], double side, double limit,
-                            double max_reach, double relevant)
+/* Returns the wall or gap at a point: the least of its first ray and of those around that.
+ * first_mm  the length of the first ray
+ * direction  unit, of the first ray */
+static double look_around(const ray_field *f, const cwi_ray_start *start,
+                          const double direction[3], int end, double limit, double first_mm)
 {
-    double length_mm =
-        cast_ray(f, own, from, direction, side, REACH * limit, max_reach, relevant);
-    if (!(length_mm < REACH * limit))
-        return length_mm;
-    double across[2][3];
+    double length_mm = first_mm, across[2][3];
+    if (!(first_mm < REACH * limit))
+        return first_mm;
     const double along = cos(OFF_DEG * CWI_PI / 180), off = sin(OFF_DEG * CWI_PI / 180);
     cwi_find_across(direction, across);
     for (int n = 0; n < AROUND; n++) {
@@ -142,10 +71,33 @@ static double measure_point(const ray_field *f, size_t own, const double from[3]
         for (int a = 0; a < 3; a++)
             d[a] = along * direction[a] +
                    off * (cos(turn) * across[0][a] + sin(turn) * across[1][a]);
-        length_mm = cwi_lesser(length_mm,
-                               cast_ray(f, own, from, d, side, length_mm, length_mm, INFINITY));
+        length_mm = cwi_lesser(length_mm, cwi_ray_length(&f->target, start, d, end, length_mm,
+                                                         length_mm, INFINITY));
     }
     return length_mm;
+}
+
+/* Measures the wall at a point, and the gap unless only the thinnest wall is sought.
+ * relevant  longer walls do not matter */
+static void measure_point(const ray_field *f, const cwi_ray_start *start,
+                          const double normal[3], double relevant, double *wall, double *gap)
+{
+    const double limits[2] = {f->limits->min_wall_mm, f->limits->min_gap_mm},
+                 reach[2] = {cwi_lesser(REACH * limits[0], f->diagonal), REACH * limits[1]},
+                 inward[3] = {-normal[0], -normal[1], -normal[2]};
+    double lengths[2] = {-1, -1}, next = reach[0];
+    if (!f->seeks_thinnest) {
+        cwi_ray_lengths(&f->target, start, normal, reach, lengths);
+        next = 4 * reach[0];
+        if (lengths[0] < 0 && reach[0] >= cwi_lesser(relevant, f->diagonal))
+            lengths[0] = INFINITY;
+        *gap = look_around(f, start, normal, CWI_RAY_ENTERS, limits[1],
+                           lengths[1] < 0 ? INFINITY : lengths[1]);
+    }
+    if (lengths[0] < 0)
+        lengths[0] = cwi_ray_length(&f->target, start, inward, CWI_RAY_LEAVES, next,
+                                    f->diagonal, relevant);
+    *wall = look_around(f, start, inward, CWI_RAY_LEAVES, limits[0], lengths[0]);
 }
 
 /* Finds the normal of a point of a triangle. Returns false where there is none that can be relied on.
@@ -248,6 +200,7 @@ static void measure_triangle(ray_field *f, size_t triangle, cwi_wall_sum *walls,
                              cwi_wall_sum *gaps)
 {
     double p[3][3], flat[3];
+    cwi_ray_start start = {.triangle = triangle};
     cwi_mesh_corners(f->mesh, triangle, p);
     cwi_triangle_normal(p[0], p[1], p[2], flat);
     const double twice = cwi_length(flat);
@@ -259,31 +212,25 @@ static void measure_triangle(ray_field *f, size_t triangle, cwi_wall_sum *walls,
         for (size_t n = 0; n < g.columns * g.rows; n++) {
             const double along = ((double)(n % g.columns) + g.start) / (double)g.columns,
                          up = 1 - sqrt(1 - ((double)(n / g.columns) + 0.5) / (double)g.rows);
-            double weights[3], at[3], normal[3], inward[3];
+            double weights[3], normal[3], wall = INFINITY, gap = INFINITY;
             weights[g.apex] = up;
             weights[(g.apex + 1) % 3] = (1 - up) * (1 - along);
             weights[(g.apex + 2) % 3] = (1 - up) * along;
             for (int a = 0; a < 3; a++)
-                at[a] = weights[0] * p[0][a] + weights[1] * p[1][a] + weights[2] * p[2][a];
+                start.at[a] =
+                    weights[0] * p[0][a] + weights[1] * p[1][a] + weights[2] * p[2][a];
             if (!find_normal(f, triangle, weights, flat, g.is_thin, normal))
                 break;
-            for (int a = 0; a < 3; a++)
-                inward[a] = -normal[a];
-            const double wall = measure_point(f, triangle, at, inward, 1, limits->min_wall_mm,
-                                              f->diagonal, find_relevant_wall(f, walls));
-            add_measure(walls, wall, limits->min_wall_mm, at, area);
+            measure_point(f, &start, normal, find_relevant_wall(f, walls), &wall, &gap);
+            add_measure(walls, wall, limits->min_wall_mm, start.at, area);
+            add_measure(gaps, gap, limits->min_gap_mm, start.at, area);
             min_mm[0] = cwi_lesser(min_mm[0], wall);
-            if (f->seeks_thinnest)
-                continue;
-            const double gap = measure_point(f, triangle, at, normal, -1, limits->min_gap_mm,
-                                             REACH * limits->min_gap_mm, INFINITY);
-            add_measure(gaps, gap, limits->min_gap_mm, at, area);
             min_mm[1] = cwi_lesser(min_mm[1], gap);
         }
     }
     if (f->wall)
         f->wall[triangle] = (float)min_mm[0];
-    if (f->gap)
+    if (f->gap && !f->seeks_thinnest)
         f->gap[triangle] = (float)min_mm[1];
 }
 
@@ -345,7 +292,7 @@ static void prepare_points(ray_field *f)
     f->step = sqrt(twice / 2 / POINTS);
     f->shares_points =
         count_points(f) > MAX_SLIVER_POINTS * fmax(POINTS, (double)mesh->triangle_count);
-    f->slack = f->tree.max * 0x1p-20f;
+    f->target.slack = f->target.tree.max * 0x1p-20f;
 }
 
 static cw_status alloc_field(ray_field *f, cw_error *err)
@@ -399,14 +346,15 @@ static cw_status measure_all(ray_field *f, cwi_wall_sum *walls, cwi_wall_sum *ga
 cw_status cwi_measure_walls(const cw_mesh *mesh, const cw_print_desc *limits, float *wall,
                             float *gap, cwi_wall_sum *walls, cwi_wall_sum *gaps, cw_error *err)
 {
-    ray_field f = {.mesh = mesh, .limits = limits, .wall = wall, .gap = gap};
+    ray_field f = {
+        .mesh = mesh, .target = {.mesh = mesh}, .limits = limits, .wall = wall, .gap = gap};
     cw_status st = alloc_field(&f, err);
     if (st == CW_OK && mesh->triangle_count)
-        st = cwi_triangle_boxes_build(&f.tree, mesh->positions, mesh->vertex_count,
+        st = cwi_triangle_boxes_build(&f.target.tree, mesh->positions, mesh->vertex_count,
                                       mesh->triangles, mesh->triangle_count, err);
     if (st == CW_OK)
         st = measure_all(&f, walls, gaps, err);
-    cwi_boxes_free(&f.tree);
+    cwi_boxes_free(&f.target.tree);
     cwi_free(f.normals);
     cwi_free(f.walls);
     cwi_free(f.gaps);
