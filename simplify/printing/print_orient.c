@@ -18,6 +18,10 @@
 /* Directions that are compared; those from which the mesh rolls, besides the normals of flat parts; poses that are
  * measured. */
 enum { DIRECTIONS = 10000, STARTS = 96, FLAT_STARTS = 64, AXES = 6, POSES = 32, CHUNK = 100 };
+
+/* Poses that are measured in one pass over the triangles. */
+enum { GROUP = 4 };
+
 enum { CUBE_EDGE = 24, BINS = 6 * CUBE_EDGE * CUBE_EDGE };
 
 /* Areas and heights that differ by less than this fraction count as equal. */
@@ -271,35 +275,60 @@ static bool fits_plate(const search *s, const double down[3], double height)
            ((x <= plate[0] && y <= plate[1]) || (x <= plate[1] && y <= plate[0]));
 }
 
-/* Measures a pose exactly. */
-static void measure_pose(void *context, size_t n)
+/* Finds how high a pose is. Returns where its bottom is, along down. */
+static double measure_height(const search *s, candidate *c)
 {
-    search *s = context;
-    candidate *c = &s->poses[n];
     double bottom = -INFINITY, top = INFINITY;
-    c->stand = (cw_print_stand){0};
     for (size_t p = 0; p < s->body.count; p++) {
         const double at = cwi_dot(s->body.points[p], c->down);
         bottom = cwi_greater(bottom, at);
         top = cwi_lesser(top, at);
     }
-    for (size_t t = 0; t < s->mesh->triangle_count; t++) {
-        double corner[3][3], normal[3];
-        cwi_mesh_normal(s->mesh, t, normal);
-        const double along = cwi_dot(normal, c->down), length = cwi_length(normal);
-        if (!(along > s->steep * length))
-            continue;
-        cwi_mesh_corners(s->mesh, t, corner);
-        bool on_plate = true;
-        for (int k = 0; k < 3; k++)
-            on_plate = on_plate && bottom - cwi_dot(corner[k], c->down) < s->limits.layer_mm;
-        c->stand.overhang_mm2 += on_plate ? 0 : length / 2;
-    }
+    c->stand = (cw_print_stand){.height_mm = bottom - top};
     for (int a = 0; a < 3; a++)
         c->stand.up[a] = c->down[a] == 0 ? 0 : -c->down[a];
-    c->stand.height_mm = bottom - top;
-    c->fits = fits_plate(s, c->down, c->stand.height_mm);
-    measure_hull(s, c, bottom);
+    return bottom;
+}
+
+static bool is_on_plate(const search *s, size_t triangle, const double down[3], double bottom)
+{
+    double corner[3][3];
+    cwi_mesh_corners(s->mesh, triangle, corner);
+    for (int k = 0; k < 3; k++)
+        if (bottom - cwi_dot(corner[k], down) >= s->limits.layer_mm)
+            return false;
+    return true;
+}
+
+/* Adds up overhangs of some poses in one pass over the triangles. */
+static void measure_overhangs(const search *s, candidate *poses, const double *bottoms,
+                              size_t count)
+{
+    for (size_t t = 0; t < s->mesh->triangle_count; t++) {
+        double normal[3];
+        cwi_mesh_normal(s->mesh, t, normal);
+        const double length = cwi_length(normal);
+        for (size_t n = 0; n < count; n++)
+            if (cwi_dot(normal, poses[n].down) > s->steep * length &&
+                !is_on_plate(s, t, poses[n].down, bottoms[n]))
+                poses[n].stand.overhang_mm2 += length / 2;
+    }
+}
+
+/* Measures a group of poses exactly. */
+static void measure_group(void *context, size_t group)
+{
+    search *s = context;
+    candidate *poses = s->poses + group * GROUP;
+    const size_t left = s->pose_count - group * GROUP, count = left < GROUP ? left : GROUP;
+    double bottoms[GROUP];
+    for (size_t n = 0; n < count; n++)
+        bottoms[n] = measure_height(s, &poses[n]);
+    measure_overhangs(s, poses, bottoms, count);
+    for (size_t n = 0; n < count; n++) {
+        poses[n].fits = fits_plate(s, poses[n].down, poses[n].stand.height_mm);
+        measure_hull(s, &poses[n], bottoms[n]);
+    }
 }
 
 /* Returns true if a pose is better than another one. */
@@ -352,6 +381,8 @@ static cw_status find_poses(search *s, cw_error *err)
     if (st == CW_OK)
         st = cwi_rest_body_thin(&s->body, &few, err);
     if (st == CW_OK)
+        st = cwi_rest_body_drop_inner(&few, 0, err);
+    if (st == CW_OK)
         st = cwi_rest_body_drop_inner(&s->body, s->limits.layer_mm, err);
     if (st == CW_OK) {
         cwi_parallel_for_all(DIRECTIONS / CHUNK, CHUNK * s->bin_count, s->limits.threads,
@@ -374,8 +405,8 @@ static void choose_pose(search *s, cw_orient_facts *facts)
         s->poses[n] = s->poses[n - 1];
     s->pose_count++;
     memcpy(s->poses[0].down, (const double[3]){0, 0, -1}, sizeof s->poses[0].down);
-    cwi_parallel_for_all(s->pose_count, s->mesh->triangle_count, s->limits.threads,
-                         measure_pose, s);
+    cwi_parallel_for_all((s->pose_count + GROUP - 1) / GROUP, s->mesh->triangle_count,
+                         s->limits.threads, measure_group, s);
     for (size_t n = 0; n < s->pose_count; n++) {
         facts->unstable += s->poses[n].stand.tip_deg < CW_MIN_TIP_DEG;
         if (is_better(s, &s->poses[n], &s->poses[best]))

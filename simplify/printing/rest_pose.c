@@ -216,12 +216,12 @@ static size_t tip_over(roll *r, const double at[3], const double axis[3], const 
         double q[3];
         cwi_sub(r->body->points[n], at, q);
         const double depth = cwi_greater(-cwi_dot(q, r->down), 0), ahead = cwi_dot(q, side);
+        if (hit != SIZE_MAX && ahead * best[1] <= depth * best[0])
+            continue;
         const double along = is_edge ? 0 : cwi_dot(q, axis);
         if (depth * depth + ahead * ahead + along * along <= r->touch * r->touch ||
             (depth == 0 && ahead <= 0))
             continue; /* on the axis, or on the plate behind it */
-        if (hit != SIZE_MAX && ahead * best[1] <= depth * best[0])
-            continue;
         best[0] = ahead;
         best[1] = depth;
         hit = n;
