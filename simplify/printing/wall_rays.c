@@ -38,7 +38,7 @@ static const double REACH = 4;
 /* Triangles that one thread measures at a time, and most parts along a side of one. */
 enum { PART = 1 << 10, MAX_PARTS = 1000 };
 
-typedef struct ray_field {
+struct cwi_wall_field {
     const cw_mesh *mesh;
     const cw_print_desc *limits;
     cwi_ray_target target;
@@ -50,14 +50,14 @@ typedef struct ray_field {
     bool shares_points;         /* triangles lower than a step share points */
     double diagonal;
     size_t parts;
-} ray_field;
+};
 
 /* --- a point ------------------------------------------------------------------------------ */
 
 /* Returns the wall or gap at a point: the least of its first ray and of those around that.
  * first_mm  the length of the first ray
  * direction  unit, of the first ray */
-static double look_around(const ray_field *f, const cwi_ray_start *start,
+static double look_around(const cwi_wall_field *f, const cwi_ray_start *start,
                           const double direction[3], int end, double limit, double first_mm)
 {
     double length_mm = first_mm, across[2][3];
@@ -79,7 +79,7 @@ static double look_around(const ray_field *f, const cwi_ray_start *start,
 
 /* Measures the wall at a point, and the gap unless only the thinnest wall is sought.
  * relevant  longer walls do not matter */
-static void measure_point(const ray_field *f, const cwi_ray_start *start,
+static void measure_point(const cwi_wall_field *f, const cwi_ray_start *start,
                           const double normal[3], double relevant, double *wall, double *gap)
 {
     const double limits[2] = {f->limits->min_wall_mm, f->limits->min_gap_mm},
@@ -102,7 +102,7 @@ static void measure_point(const ray_field *f, const cwi_ray_start *start,
 
 /* Finds the normal of a point of a triangle. Returns false where there is none that can be relied on.
  * weights  of the corners   flat  of the triangle, unit   is_thin  its own normal may be anything */
-static bool find_normal(const ray_field *f, size_t triangle, const double weights[3],
+static bool find_normal(const cwi_wall_field *f, size_t triangle, const double weights[3],
                         const double flat[3], bool is_thin, double normal[3])
 {
     const double smooth = cos(SMOOTH_DEG * CWI_PI / 180);
@@ -162,8 +162,8 @@ static size_t count_parts(double length, double step)
 
 /* Where slivers would get far too many points, triangles lower than a step share them: each gets as many as its area is
  * worth, at least one, at places of its own. */
-static point_grid divide_triangle(const ray_field *f, size_t triangle, const double p[3][3],
-                                  double twice_area)
+static point_grid divide_triangle(const cwi_wall_field *f, size_t triangle,
+                                  const double p[3][3], double twice_area)
 {
     const double step = f->step;
     point_grid g = {0};
@@ -189,14 +189,14 @@ static point_grid divide_triangle(const ray_field *f, size_t triangle, const dou
 
 /* Returns the length beyond which walls do not matter: where a triangle's wall is not requested, and
  * some are thinner. */
-static double find_relevant_wall(const ray_field *f, const cwi_wall_sum *walls)
+static double find_relevant_wall(const cwi_wall_field *f, const cwi_wall_sum *walls)
 {
     return f->wall             ? INFINITY
            : f->seeks_thinnest ? walls->min_mm
                                : REACH * f->limits->min_wall_mm;
 }
 
-static void measure_triangle(ray_field *f, size_t triangle, cwi_wall_sum *walls,
+static void measure_triangle(cwi_wall_field *f, size_t triangle, cwi_wall_sum *walls,
                              cwi_wall_sum *gaps)
 {
     double p[3][3], flat[3];
@@ -236,7 +236,7 @@ static void measure_triangle(ray_field *f, size_t triangle, cwi_wall_sum *walls,
 
 static void measure_part(void *context, size_t k)
 {
-    ray_field *f = context;
+    cwi_wall_field *f = context;
     f->walls[k] = (cwi_wall_sum){.min_mm = INFINITY};
     if (!f->seeks_thinnest)
         f->gaps[k] = f->walls[k];
@@ -247,7 +247,7 @@ static void measure_part(void *context, size_t k)
 /* --- all ---------------------------------------------------------------------------------- */
 
 /* Returns how many points there are where each triangle has its own. */
-static double count_points(const ray_field *f)
+static double count_points(const cwi_wall_field *f)
 {
     double sum = 0;
     for (size_t t = 0; t < f->mesh->triangle_count; t++) {
@@ -264,7 +264,7 @@ static double count_points(const ray_field *f)
 }
 
 /* Finds the normals of vertices, weighted by area, and the step between points. */
-static void prepare_points(ray_field *f)
+static void prepare_points(cwi_wall_field *f)
 {
     const cw_mesh *mesh = f->mesh;
     double twice = 0, low[3], high[3];
@@ -295,13 +295,35 @@ static void prepare_points(ray_field *f)
     f->target.slack = f->target.tree.max * 0x1p-20f;
 }
 
-static cw_status alloc_field(ray_field *f, cw_error *err)
+cw_status cwi_wall_field_new(const cw_mesh *mesh, const cw_print_desc *limits,
+                             cwi_wall_field **field, cw_error *err)
 {
-    f->parts = (f->mesh->triangle_count + PART - 1) / PART;
-    f->normals = cwi_alloc_zeroed(f->mesh->vertex_count, 3 * sizeof *f->normals);
+    cwi_wall_field *f = *field = cwi_alloc_zeroed(1, sizeof *f);
+    if (!f)
+        return cwi_fail_memory(err);
+    *f = (cwi_wall_field){.mesh = mesh, .target = {.mesh = mesh}, .limits = limits};
+    f->parts = (mesh->triangle_count + PART - 1) / PART;
+    f->normals = cwi_alloc_zeroed(mesh->vertex_count, 3 * sizeof *f->normals);
     f->walls = cwi_alloc_array(f->parts, sizeof *f->walls);
     f->gaps = cwi_alloc_array(f->parts, sizeof *f->gaps);
-    return f->normals && f->walls && f->gaps ? CW_OK : cwi_fail_memory(err);
+    cw_status st = f->normals && f->walls && f->gaps ? CW_OK : cwi_fail_memory(err);
+    if (st == CW_OK && mesh->triangle_count)
+        st = cwi_triangle_boxes_build(&f->target.tree, mesh->positions, mesh->vertex_count,
+                                      mesh->triangles, mesh->triangle_count, err);
+    if (st == CW_OK)
+        prepare_points(f);
+    return st;
+}
+
+void cwi_wall_field_free(cwi_wall_field *f)
+{
+    if (!f)
+        return;
+    cwi_boxes_free(&f->target.tree);
+    cwi_free(f->normals);
+    cwi_free(f->walls);
+    cwi_free(f->gaps);
+    cwi_free(f);
 }
 
 /* Adds up parts in their order, so that threads do not matter. */
@@ -317,18 +339,17 @@ static void add_parts(const cwi_wall_sum *parts, size_t count, cwi_wall_sum *sum
     }
 }
 
-static cw_status measure_parts(ray_field *f, cw_error *err)
+static cw_status measure_parts(cwi_wall_field *f, cw_error *err)
 {
     return cwi_parallel_for(f->parts, 1 << 16, f->limits->threads, &f->limits->progress,
                             "walls", measure_part, f, err);
 }
 
-/* Measures all parts. Where walls are not requested of each triangle, rays end where walls are thick;
- * only if there are no others is the thinnest of those sought. */
-static cw_status measure_all(ray_field *f, cwi_wall_sum *walls, cwi_wall_sum *gaps,
-                             cw_error *err)
+cw_status cwi_measure_walls(cwi_wall_field *f, float *wall, float *gap, cwi_wall_sum *walls,
+                            cwi_wall_sum *gaps, cw_error *err)
 {
-    prepare_points(f);
+    f->wall = wall;
+    f->gap = gap;
     cw_status st = measure_parts(f, err);
     if (st != CW_OK)
         return st;
@@ -336,27 +357,9 @@ static cw_status measure_all(ray_field *f, cwi_wall_sum *walls, cwi_wall_sum *ga
     add_parts(f->walls, f->parts, walls);
     if (f->wall || walls->min_mm < INFINITY)
         return CW_OK;
-    f->seeks_thinnest = true;
+    f->seeks_thinnest = true; /* all rays ended where walls are thick */
     st = measure_parts(f, err);
     if (st == CW_OK)
         add_parts(f->walls, f->parts, walls);
-    return st;
-}
-
-cw_status cwi_measure_walls(const cw_mesh *mesh, const cw_print_desc *limits, float *wall,
-                            float *gap, cwi_wall_sum *walls, cwi_wall_sum *gaps, cw_error *err)
-{
-    ray_field f = {
-        .mesh = mesh, .target = {.mesh = mesh}, .limits = limits, .wall = wall, .gap = gap};
-    cw_status st = alloc_field(&f, err);
-    if (st == CW_OK && mesh->triangle_count)
-        st = cwi_triangle_boxes_build(&f.target.tree, mesh->positions, mesh->vertex_count,
-                                      mesh->triangles, mesh->triangle_count, err);
-    if (st == CW_OK)
-        st = measure_all(&f, walls, gaps, err);
-    cwi_boxes_free(&f.target.tree);
-    cwi_free(f.normals);
-    cwi_free(f.walls);
-    cwi_free(f.gaps);
     return st;
 }
