@@ -136,7 +136,7 @@ static void pack_chunk(void *context, size_t k)
 
 static bool prepare_search(cwi_pair_search *s, int threads)
 {
-    if (!cwi_find_fans(s) || !cwi_welded_sort(&s->welded, s->fans.fan_of, &s->tree))
+    if (!cwi_find_fans(s) || !cwi_welded_sort(&s->welded, s->fans.fan_of, threads, &s->tree))
         return false;
     s->node_chunks = (cwi_boxes_nodes(&s->tree) + CHUNK_NODES - 1) / CHUNK_NODES;
     s->list_count = s->node_chunks + s->fans.count;

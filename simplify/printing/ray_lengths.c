@@ -88,6 +88,84 @@ static double find_length(const cwi_ray_target *target, const ray *r, const doub
     return faces ? r->fraction * r->reach : INFINITY;
 }
 
+/* --- a cone of rays ----------------------------------------------------------------------- */
+
+enum { MAX_NEAR = 64 };
+
+/* Triangles that rays in a cone may meet, in the order in which each ray would visit them. */
+typedef struct near_triangles {
+    const cwi_ray_target *target;
+    const cwi_ray_start *start;
+    cwi_boxes_segment segment;
+    size_t count; /* beyond MAX_NEAR: not all are listed */
+    size_t triangles[MAX_NEAR];
+    double corners[MAX_NEAR][3][3];
+} near_triangles;
+
+static bool list_near(void *context, size_t slot)
+{
+    near_triangles *near = context;
+    const size_t triangle = near->target->tree.order[slot];
+    if (triangle == near->start->triangle)
+        return true;
+    if (near->count < MAX_NEAR) {
+        near->triangles[near->count] = triangle;
+        cwi_mesh_corners(near->target->mesh, triangle, near->corners[near->count]);
+    }
+    return near->count++ < MAX_NEAR;
+}
+
+/* Lists what rays up to a length may meet, whose ends are within a distance of the axis. */
+static void list_around_axis(near_triangles *near, const double axis[3], double length,
+                             double distance)
+{
+    double vector[3];
+    for (int a = 0; a < 3; a++)
+        vector[a] = length * axis[a];
+    near->segment = cwi_boxes_segment_of(near->start->at, vector,
+                                         near->target->slack + (float)(BEYOND * distance));
+    cwi_boxes_pierce(&near->target->tree, &near->segment, list_near, near);
+}
+
+static double measure_listed(const near_triangles *near, const double direction[3], int end,
+                             double reach)
+{
+    ray_search s = {.target = near->target, .start = near->start};
+    s.rays[0] = start_ray(direction, reach);
+    for (size_t n = 0; n < near->count; n++)
+        meet_triangle(&s, &s.rays[0], (const double(*)[3])near->corners[n], near->triangles[n]);
+    return s.rays[0].hit == SIZE_MAX ? INFINITY
+                                     : find_length(near->target, &s.rays[0], direction, end);
+}
+
+double cwi_shortest_around(const cwi_ray_target *target, const cwi_ray_start *start,
+                           const double axis[3], int end, const cwi_ray_cone *cone,
+                           double length)
+{
+    near_triangles near; /* large: not cleared */
+    double across[2][3];
+    const double along = cos(cone->angle), off = sin(cone->angle);
+    near.target = target;
+    near.start = start;
+    near.count = 0;
+    cwi_find_across(axis, across);
+    list_around_axis(&near, axis, length, length * off);
+    for (int n = 0; n < cone->rays; n++) {
+        const double turn = 2 * CWI_PI * n / cone->rays;
+        double d[3];
+        for (int a = 0; a < 3; a++)
+            d[a] =
+                along * axis[a] + off * (cos(turn) * across[0][a] + sin(turn) * across[1][a]);
+        length =
+            cwi_lesser(length, near.count > MAX_NEAR ? cwi_ray_length(target, start, d, end,
+                                                                      length, length, INFINITY)
+                                                     : measure_listed(&near, d, end, length));
+    }
+    return length;
+}
+
+/* --- single rays -------------------------------------------------------------------------- */
+
 double cwi_ray_length(const cwi_ray_target *target, const cwi_ray_start *start,
                       const double direction[3], int end, double first, double max_reach,
                       double relevant)

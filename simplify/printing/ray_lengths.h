@@ -38,4 +38,16 @@ double cwi_ray_length(const cwi_ray_target *target, const cwi_ray_start *start,
 void cwi_ray_lengths(const cwi_ray_target *target, const cwi_ray_start *start,
                      const double normal[3], const double reach[2], double lengths[2]);
 
+/* Rays around an axis, at an angle to it in radians. */
+typedef struct cwi_ray_cone {
+    int rays;
+    double angle;
+} cwi_ray_cone;
+
+/* Returns the length of the shortest of the rays in a cone, or the length of the axis if that is less.
+ * axis  unit    length  of the axis, mm */
+double cwi_shortest_around(const cwi_ray_target *target, const cwi_ray_start *start,
+                           const double axis[3], int end, const cwi_ray_cone *cone,
+                           double length);
+
 #endif

@@ -60,21 +60,10 @@ struct cwi_wall_field {
 static double look_around(const cwi_wall_field *f, const cwi_ray_start *start,
                           const double direction[3], int end, double limit, double first_mm)
 {
-    double length_mm = first_mm, across[2][3];
-    if (!(first_mm < REACH * limit))
-        return first_mm;
-    const double along = cos(OFF_DEG * CWI_PI / 180), off = sin(OFF_DEG * CWI_PI / 180);
-    cwi_find_across(direction, across);
-    for (int n = 0; n < AROUND; n++) {
-        const double turn = 2 * CWI_PI * n / AROUND;
-        double d[3];
-        for (int a = 0; a < 3; a++)
-            d[a] = along * direction[a] +
-                   off * (cos(turn) * across[0][a] + sin(turn) * across[1][a]);
-        length_mm = cwi_lesser(length_mm, cwi_ray_length(&f->target, start, d, end, length_mm,
-                                                         length_mm, INFINITY));
-    }
-    return length_mm;
+    const cwi_ray_cone cone = {AROUND, OFF_DEG * CWI_PI / 180};
+    return first_mm < REACH * limit
+               ? cwi_shortest_around(&f->target, start, direction, end, &cone, first_mm)
+               : first_mm;
 }
 
 /* Measures the wall at a point, and the gap unless only the thinnest wall is sought.
