@@ -7,9 +7,8 @@
 #include "core/geometry/vec3.h"
 #include "core/mesh/mesh.h"
 #include "core/mesh/mesh_triangle.h"
-#include "simplify/printing/outline.h"
+#include "simplify/printing/pose_search.h"
 #include "simplify/printing/print_limits.h"
-#include "simplify/printing/rest_pose.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -19,36 +18,10 @@
  * measured. */
 enum { DIRECTIONS = 10000, STARTS = 96, FLAT_STARTS = 64, AXES = 6, POSES = 32, CHUNK = 100 };
 
-/* Poses that are measured in one pass over the triangles. */
-enum { GROUP = 4 };
-
 enum { CUBE_EDGE = 24, BINS = 6 * CUBE_EDGE * CUBE_EDGE };
 
 /* Areas and heights that differ by less than this fraction count as equal. */
 static const double EQUAL = 1e-3;
-
-/* Triangles whose normals are in one cell of a cube around the origin. */
-typedef struct normal_bin {
-    double area, normal[3];
-} normal_bin;
-
-typedef struct candidate {
-    double down[3], overhang; /* estimated */
-    cw_print_stand stand;     /* measured */
-    bool fits;
-} candidate;
-
-typedef struct search {
-    const cw_mesh *mesh;
-    cw_print_desc limits;
-    cwi_rest_body body; /* vertices that triangles name, and the centre of mass */
-    double steep, area, diagonal;
-    normal_bin *bins;
-    size_t bin_count;
-    candidate *directions, *poses;
-    size_t pose_count;
-    bool no_memory;
-} search;
 
 /* --- the histogram ------------------------------------------------------------------------ */
 
@@ -64,7 +37,8 @@ static size_t find_bin(const double n[3])
 }
 
 /* Adds up normals, the volume and its centre. */
-static void sum_normals(search *s, const double from[3], double *volume, double moment[3])
+static void sum_normals(cwi_pose_search *s, const double from[3], double *volume,
+                        double moment[3])
 {
     for (size_t t = 0; t < s->mesh->triangle_count; t++) {
         double corner[3][3], normal[3], p[3][3];
@@ -78,7 +52,7 @@ static void sum_normals(search *s, const double from[3], double *volume, double 
             moment[a] += part * (p[0][a] + p[1][a] + p[2][a]) / 4;
         if (!(length > 0))
             continue;
-        normal_bin *bin = &s->bins[find_bin(normal)];
+        cwi_normal_bin *bin = &s->bins[find_bin(normal)];
         bin->area += length / 2;
         for (int a = 0; a < 3; a++)
             bin->normal[a] += normal[a];
@@ -86,7 +60,7 @@ static void sum_normals(search *s, const double from[3], double *volume, double 
     }
 }
 
-static cw_status make_histogram(search *s, cw_error *err)
+static cw_status make_histogram(cwi_pose_search *s, cw_error *err)
 {
     double low[3], high[3], middle[3], volume = 0, moment[3] = {0};
     s->bins = cwi_alloc_zeroed(BINS, sizeof *s->bins);
@@ -109,7 +83,7 @@ static cw_status make_histogram(search *s, cw_error *err)
 
 /* Estimates the area of overhangs, without what faces straight down, if flat parts are assumed to stand on the
  * plate. */
-static double estimate_overhang(const search *s, const double down[3], bool stands)
+static double estimate_overhang(const cwi_pose_search *s, const double down[3], bool stands)
 {
     const double flat = 0.9986; /* the cosine of 3 degrees */
     double sum = 0;
@@ -123,10 +97,10 @@ static double estimate_overhang(const search *s, const double down[3], bool stan
 
 static void estimate_chunk(void *context, size_t chunk)
 {
-    search *s = context;
+    cwi_pose_search *s = context;
     const double golden = CWI_PI * (3 - sqrt(5));
     for (size_t n = chunk * CHUNK; n < (chunk + 1) * CHUNK; n++) {
-        candidate *c = &s->directions[n];
+        cwi_pose *c = &s->directions[n];
         const double z = 1 - (2 * (double)n + 1) / DIRECTIONS, r = sqrt(1 - z * z);
         c->down[0] = r * cos(golden * (double)n);
         c->down[1] = r * sin(golden * (double)n);
@@ -139,7 +113,7 @@ static void estimate_chunk(void *context, size_t chunk)
 
 static int compare_candidates(const void *a, const void *b)
 {
-    const candidate *p = a, *q = b;
+    const cwi_pose *p = a, *q = b;
     if (p->overhang != q->overhang)
         return p->overhang < q->overhang ? -1 : 1;
     return memcmp(p->down, q->down, sizeof p->down);
@@ -147,13 +121,13 @@ static int compare_candidates(const void *a, const void *b)
 
 static int compare_bins(const void *a, const void *b)
 {
-    const normal_bin *p = a, *q = b;
+    const cwi_normal_bin *p = a, *q = b;
     if (p->area != q->area)
         return p->area > q->area ? -1 : 1;
     return memcmp(p->normal, q->normal, sizeof p->normal);
 }
 
-static bool is_near(const candidate *list, size_t count, const double down[3], double cosine)
+static bool is_near(const cwi_pose *list, size_t count, const double down[3], double cosine)
 {
     for (size_t n = 0; n < count; n++)
         if (cwi_dot(list[n].down, down) > cosine)
@@ -161,13 +135,13 @@ static bool is_near(const candidate *list, size_t count, const double down[3], d
     return false;
 }
 
-static void add_start(search *s, const double down[3])
+static void add_start(cwi_pose_search *s, const double down[3])
 {
     memcpy(s->poses[s->pose_count++].down, down, sizeof s->poses->down);
 }
 
 /* Lists where the mesh begins to roll: the best directions, 8 degrees apart, flat parts, the axes. */
-static void list_starts(search *s)
+static void list_starts(cwi_pose_search *s)
 {
     const double apart = 0.9903; /* the cosine of 8 degrees */
     qsort(s->directions, DIRECTIONS, sizeof *s->directions, compare_candidates);
@@ -185,7 +159,7 @@ static void list_starts(search *s)
 }
 
 typedef struct rolling {
-    search *s;
+    cwi_pose_search *s;
     const cwi_rest_body *body;
 } rolling;
 
@@ -196,14 +170,14 @@ static void roll_one(void *context, size_t n)
         cwi_set_flag(&r->s->no_memory);
 }
 
-static void roll_all(search *s, const cwi_rest_body *body)
+static void roll_all(cwi_pose_search *s, const cwi_rest_body *body)
 {
     rolling r = {s, body};
     cwi_parallel_for_all(s->pose_count, body->count, s->limits.threads, roll_one, &r);
 }
 
 /* Keeps poses that differ by half a degree, the best by their estimate. */
-static void keep_best_poses(search *s, size_t max)
+static void keep_best_poses(cwi_pose_search *s, size_t max)
 {
     size_t kept = 0;
     for (size_t n = 0; n < s->pose_count; n++)
@@ -215,124 +189,10 @@ static void keep_best_poses(search *s, size_t max)
     s->pose_count = kept;
 }
 
-/* --- measuring ---------------------------------------------------------------------------- */
-
-/* Makes two directions that are perpendicular to one, and to each other. */
-static void make_axes(const double down[3], double x[3], double y[3])
-{
-    double other[3] = {0};
-    other[fabs(down[0]) < 0.6 ? 0 : 1] = 1;
-    cwi_cross(down, other, x);
-    cwi_to_unit(x);
-    cwi_cross(x, down, y);
-}
-
-static void measure_hull(search *s, candidate *c, double bottom)
-{
-    double x[3], y[3];
-    const cwi_rest_body *b = &s->body;
-    size_t count = 0;
-    make_axes(c->down, x, y);
-    for (size_t n = 0; n < b->count; n++)
-        count += bottom - cwi_dot(b->points[n], c->down) < s->limits.layer_mm;
-    cwi_plan_point *points = cwi_alloc_array(count, sizeof *points),
-                   *hull = cwi_alloc_array(2 * count + 2, sizeof *hull);
-    if (!points || !hull)
-        cwi_set_flag(&s->no_memory);
-    else {
-        count = 0;
-        for (size_t n = 0; n < b->count; n++)
-            if (bottom - cwi_dot(b->points[n], c->down) < s->limits.layer_mm)
-                points[count++] =
-                    (cwi_plan_point){cwi_dot(b->points[n], x), cwi_dot(b->points[n], y)};
-        const size_t corners = cwi_find_outline(points, count, hull);
-        const double high = bottom - cwi_dot(b->center, c->down),
-                     margin = cwi_outline_margin(
-                         hull, corners,
-                         &(cwi_plan_point){cwi_dot(b->center, x), cwi_dot(b->center, y)});
-        c->stand.hull_mm2 = cwi_outline_area(hull, corners);
-        c->stand.tip_deg = margin > 0 && high > 0 ? atan2(margin, high) * 180 / CWI_PI : 0;
-    }
-    cwi_free(points);
-    cwi_free(hull);
-}
-
-static bool fits_plate(const search *s, const double down[3], double height)
-{
-    const double *plate = s->limits.plate_mm;
-    double turn[12], low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
-    if (plate[0] == 0)
-        return true;
-    cwi_turn_down(down, turn);
-    for (size_t n = 0; n < s->body.count; n++)
-        for (int a = 0; a < 2; a++) {
-            const double at = cwi_dot(turn + 4 * a, s->body.points[n]);
-            low[a] = cwi_lesser(low[a], at);
-            high[a] = cwi_greater(high[a], at);
-        }
-    const double x = high[0] - low[0], y = high[1] - low[1];
-    return height <= plate[2] &&
-           ((x <= plate[0] && y <= plate[1]) || (x <= plate[1] && y <= plate[0]));
-}
-
-/* Finds how high a pose is. Returns where its bottom is, along down. */
-static double measure_height(const search *s, candidate *c)
-{
-    double bottom = -INFINITY, top = INFINITY;
-    for (size_t p = 0; p < s->body.count; p++) {
-        const double at = cwi_dot(s->body.points[p], c->down);
-        bottom = cwi_greater(bottom, at);
-        top = cwi_lesser(top, at);
-    }
-    c->stand = (cw_print_stand){.height_mm = bottom - top};
-    for (int a = 0; a < 3; a++)
-        c->stand.up[a] = c->down[a] == 0 ? 0 : -c->down[a];
-    return bottom;
-}
-
-static bool is_on_plate(const search *s, size_t triangle, const double down[3], double bottom)
-{
-    double corner[3][3];
-    cwi_mesh_corners(s->mesh, triangle, corner);
-    for (int k = 0; k < 3; k++)
-        if (bottom - cwi_dot(corner[k], down) >= s->limits.layer_mm)
-            return false;
-    return true;
-}
-
-/* Adds up overhangs of some poses in one pass over the triangles. */
-static void measure_overhangs(const search *s, candidate *poses, const double *bottoms,
-                              size_t count)
-{
-    for (size_t t = 0; t < s->mesh->triangle_count; t++) {
-        double normal[3];
-        cwi_mesh_normal(s->mesh, t, normal);
-        const double length = cwi_length(normal);
-        for (size_t n = 0; n < count; n++)
-            if (cwi_dot(normal, poses[n].down) > s->steep * length &&
-                !is_on_plate(s, t, poses[n].down, bottoms[n]))
-                poses[n].stand.overhang_mm2 += length / 2;
-    }
-}
-
-/* Measures a group of poses exactly. */
-static void measure_group(void *context, size_t group)
-{
-    search *s = context;
-    candidate *poses = s->poses + group * GROUP;
-    const size_t left = s->pose_count - group * GROUP, count = left < GROUP ? left : GROUP;
-    double bottoms[GROUP];
-    for (size_t n = 0; n < count; n++)
-        bottoms[n] = measure_height(s, &poses[n]);
-    measure_overhangs(s, poses, bottoms, count);
-    for (size_t n = 0; n < count; n++) {
-        poses[n].fits = fits_plate(s, poses[n].down, poses[n].stand.height_mm);
-        measure_hull(s, &poses[n], bottoms[n]);
-    }
-}
+/* --- choosing ----------------------------------------------------------------------------- */
 
 /* Returns true if a pose is better than another one. */
-static bool is_better(const search *s, const candidate *a, const candidate *b)
+static bool is_better(const cwi_pose_search *s, const cwi_pose *a, const cwi_pose *b)
 {
     const bool stable[2] = {a->stand.tip_deg >= CW_MIN_TIP_DEG,
                             b->stand.tip_deg >= CW_MIN_TIP_DEG};
@@ -354,7 +214,7 @@ static bool is_better(const search *s, const candidate *a, const candidate *b)
 }
 
 /* Returns true if a pose is better than the present one by more than what counts as equal. */
-static bool is_worth_turning(const search *s, const candidate *a, const candidate *now)
+static bool is_worth_turning(const cwi_pose_search *s, const cwi_pose *a, const cwi_pose *now)
 {
     const bool stands = now->stand.tip_deg >= CW_MIN_TIP_DEG;
     if (a->stand.tip_deg < CW_MIN_TIP_DEG && a->fits == now->fits)
@@ -372,7 +232,7 @@ static bool is_worth_turning(const search *s, const candidate *a, const candidat
 
 /* --- the call ----------------------------------------------------------------------------- */
 
-static cw_status find_poses(search *s, cw_error *err)
+static cw_status find_poses(cwi_pose_search *s, cw_error *err)
 {
     cwi_rest_body few = {0};
     s->directions = cwi_alloc_zeroed(DIRECTIONS, sizeof *s->directions);
@@ -398,15 +258,14 @@ static cw_status find_poses(search *s, cw_error *err)
 }
 
 /* Measures the poses, and the present one first. */
-static void choose_pose(search *s, cw_orient_facts *facts)
+static void choose_pose(cwi_pose_search *s, cw_orient_facts *facts)
 {
     size_t best = 0;
     for (size_t n = s->pose_count; n > 0; n--)
         s->poses[n] = s->poses[n - 1];
     s->pose_count++;
     memcpy(s->poses[0].down, (const double[3]){0, 0, -1}, sizeof s->poses[0].down);
-    cwi_parallel_for_all((s->pose_count + GROUP - 1) / GROUP, s->mesh->triangle_count,
-                         s->limits.threads, measure_group, s);
+    cwi_measure_poses(s);
     for (size_t n = 0; n < s->pose_count; n++) {
         facts->unstable += s->poses[n].stand.tip_deg < CW_MIN_TIP_DEG;
         if (is_better(s, &s->poses[n], &s->poses[best]))
@@ -439,7 +298,7 @@ cw_status cw_orient_print(const cw_mesh *mesh, const cw_print_desc *desc,
 {
     CWI_REQUIRE(err, mesh, facts);
     CWI_REQUIRE_VERSION(err, desc, 0);
-    search s = {.mesh = mesh};
+    cwi_pose_search s = {.mesh = mesh};
     *facts = (cw_orient_facts){0};
     cw_status st = cwi_print_limits(desc, &s.limits, err);
     if (st == CW_OK)
