@@ -198,7 +198,7 @@ static cw_status measure_walls(cwi_wall_field *field, const cw_mesh *mesh, const
     return st;
 }
 
-/* What threads find out side by side. */
+/* Independent measurements before rays are cast; threads take one each. */
 enum { WALL_FIELD, ISLANDS, STAND, PREPARATIONS };
 
 typedef struct preparation {

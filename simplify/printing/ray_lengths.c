@@ -21,7 +21,7 @@ typedef struct ray {
 
 /* A ray, and perhaps one the other way, in one search of the tree. */
 typedef struct ray_search {
-    const cwi_ray_target *target;
+    const cwi_wall_target *target;
     const cwi_ray_start *start;
     ray rays[2];
     cwi_boxes_segment segment;
@@ -77,8 +77,8 @@ static bool visit_two(void *context, size_t slot)
 }
 
 /* Returns the length of a ray that has met a triangle, or INFINITY: the triangle does not face it. */
-static double find_length(const cwi_ray_target *target, const ray *r, const double direction[3],
-                          int end)
+static double find_length(const cwi_wall_target *target, const ray *r,
+                          const double direction[3], int end)
 {
     double p[3][3], normal[3];
     cwi_mesh_corners(target->mesh, r->hit, p);
@@ -94,7 +94,7 @@ enum { MAX_NEAR = 64 };
 
 /* Triangles that rays in a cone may meet, in the order in which each ray would visit them. */
 typedef struct near_triangles {
-    const cwi_ray_target *target;
+    const cwi_wall_target *target;
     const cwi_ray_start *start;
     cwi_boxes_segment segment;
     size_t count; /* beyond MAX_NEAR: not all are listed */
@@ -138,7 +138,7 @@ static double measure_listed(const near_triangles *near, const double direction[
                                      : find_length(near->target, &s.rays[0], direction, end);
 }
 
-double cwi_shortest_around(const cwi_ray_target *target, const cwi_ray_start *start,
+double cwi_shortest_around(const cwi_wall_target *target, const cwi_ray_start *start,
                            const double axis[3], int end, const cwi_ray_cone *cone,
                            double length)
 {
@@ -166,7 +166,7 @@ double cwi_shortest_around(const cwi_ray_target *target, const cwi_ray_start *st
 
 /* --- single rays -------------------------------------------------------------------------- */
 
-double cwi_ray_length(const cwi_ray_target *target, const cwi_ray_start *start,
+double cwi_ray_length(const cwi_wall_target *target, const cwi_ray_start *start,
                       const double direction[3], int end, double first, double max_reach,
                       double relevant)
 {
@@ -183,7 +183,7 @@ double cwi_ray_length(const cwi_ray_target *target, const cwi_ray_start *start,
     }
 }
 
-void cwi_ray_lengths(const cwi_ray_target *target, const cwi_ray_start *start,
+void cwi_ray_lengths(const cwi_wall_target *target, const cwi_ray_start *start,
                      const double normal[3], const double reach[2], double lengths[2])
 {
     const double inward[3] = {-normal[0], -normal[1], -normal[2]};

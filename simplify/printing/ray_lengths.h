@@ -6,11 +6,11 @@
 
 #include <cubewright/mesh.h>
 
-typedef struct cwi_ray_target {
+typedef struct cwi_wall_target {
     const cw_mesh *mesh;
     cwi_boxes tree; /* of its triangles */
     float slack;    /* for rounding, mm */
-} cwi_ray_target;
+} cwi_wall_target;
 
 /* A point of a triangle, which rays from there do not meet. */
 typedef struct cwi_ray_start {
@@ -27,7 +27,7 @@ enum { CWI_RAY_ENTERS = -1, CWI_RAY_LEAVES = 1 };
  * end        CWI_RAY_ENTERS or CWI_RAY_LEAVES
  * first      how far it looks at first, mm
  * relevant   longer results do not matter: INFINITY may stand for them */
-double cwi_ray_length(const cwi_ray_target *target, const cwi_ray_start *start,
+double cwi_ray_length(const cwi_wall_target *target, const cwi_ray_start *start,
                       const double direction[3], int end, double first, double max_reach,
                       double relevant);
 
@@ -35,7 +35,7 @@ double cwi_ray_length(const cwi_ray_target *target, const cwi_ray_start *start,
  * normal   unit, out of the solid
  * reach    of the ray that leaves the solid at its end, and of the one that enters, mm
  * lengths  as cwi_ray_length(), but -1 where a ray meets nothing within its reach */
-void cwi_ray_lengths(const cwi_ray_target *target, const cwi_ray_start *start,
+void cwi_ray_lengths(const cwi_wall_target *target, const cwi_ray_start *start,
                      const double normal[3], const double reach[2], double lengths[2]);
 
 /* Rays around an axis, at an angle to it in radians. */
@@ -46,7 +46,7 @@ typedef struct cwi_ray_cone {
 
 /* Returns the length of the shortest of the rays in a cone, or the length of the axis if that is less.
  * axis  unit    length  of the axis, mm */
-double cwi_shortest_around(const cwi_ray_target *target, const cwi_ray_start *start,
+double cwi_shortest_around(const cwi_wall_target *target, const cwi_ray_start *start,
                            const double axis[3], int end, const cwi_ray_cone *cone,
                            double length);
 

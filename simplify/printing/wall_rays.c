@@ -41,7 +41,7 @@ enum { PART = 1 << 10, MAX_PARTS = 1000 };
 struct cwi_wall_field {
     const cw_mesh *mesh;
     const cw_print_desc *limits;
-    cwi_ray_target target;
+    cwi_wall_target target;
     float *normals;             /* vertices x 3; 0 where there is none */
     float *wall, *gap;          /* of each triangle; may be NULL */
     bool seeks_thinnest;        /* nothing but the thinnest wall of each part */

@@ -46,7 +46,8 @@ double wall_ms()
     return now.count();
 }
 
-template <typename Tag> double measure(const Surface &surface, double (*now_ms)(), size_t *pairs)
+template <typename Tag>
+double measure(const Surface &surface, double (*now_ms)(), size_t *pairs)
 {
     Pairs found;
     const double start = now_ms();

@@ -260,7 +260,7 @@ static void fill_body(cwi_rest_body *body, size_t count, int shape)
     }
 }
 
-/* What is dropped from a body is deeper than asked for, whichever way is down. */
+/* Dropped points are deeper than asked for, whichever way is down. */
 static void points_near_the_hull_stay(void **state)
 {
     (void)state;
