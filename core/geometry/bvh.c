@@ -3,7 +3,9 @@
 #include "core/geometry/bvh.h"
 
 #include "core/base/memory.h"
+#include "core/base/parallel.h"
 #include "core/base/status.h"
+#include "core/geometry/vec3.h"
 
 #include <float.h>
 #include <stdlib.h>
@@ -14,7 +16,15 @@ typedef struct keyed {
     uint32_t item;
 } keyed;
 
-enum { KEY_BITS = 16 }; /* of each coordinate */
+/* Bits of a key: of each coordinate, those below the bucket, and of a digit of those. */
+enum { KEY_BITS = 16, BUCKET_BITS = 8, LOW_BITS = 3 * KEY_BITS - BUCKET_BITS, DIGIT_BITS = 10 };
+enum { BUCKETS = 1 << BUCKET_BITS, DIGITS = 1 << DIGIT_BITS, PASSES = LOW_BITS / DIGIT_BITS };
+_Static_assert(
+    PASSES *DIGIT_BITS == LOW_BITS && PASSES % 2 == 0,
+    "digits are all of the lower bits, and the last pass ends where the first began");
+
+/* Boxes that one thread handles at a time. */
+enum { CHUNK = 1 << 16 };
 
 static unsigned rotate_left(unsigned octant, unsigned by)
 {
@@ -48,20 +58,33 @@ static unsigned exit_axis(unsigned rank)
 /* Hilbert's curve visits the octants of a cube in the order of a Gray code. In each octant the
  * curve is the same, but mirrored (entry, 0 to 7) and turned (axis, 0 to 2), so that it begins
  * beside the end of the one before [Hamilton2006]. A cube is known by 8 axis + entry. */
+typedef struct octant_step {
+    uint8_t rank, cube; /* the octant's rank, and how it is mirrored and turned */
+} octant_step;
+
+static octant_step find_octant(unsigned cube, unsigned octant)
+{
+    const unsigned entry = cube % 8, axis = cube / 8, turn = (axis + 1) % 3;
+    const unsigned rank = gray_rank(rotate_left(octant ^ entry, (3 - turn) % 3));
+    const unsigned inner = entry ^ rotate_left(entry_corner(rank), turn);
+    return (octant_step){(uint8_t)rank, (uint8_t)(8 * ((turn + exit_axis(rank)) % 3) + inner)};
+}
+
+/* Two steps at a time, by cube and by two bits of x, of y and of z. */
 typedef struct hilbert {
-    uint8_t rank[24][8]; /* by cube and octant: the octant's rank */
-    uint8_t cube[24][8]; /* by cube and octant: how the octant is mirrored and turned */
+    octant_step steps[24][64];
 } hilbert;
 
 static void make_curve(hilbert *h)
 {
     for (unsigned cube = 0; cube < 24; cube++)
-        for (unsigned octant = 0; octant < 8; octant++) {
-            const unsigned entry = cube % 8, axis = cube / 8, turn = (axis + 1) % 3;
-            const unsigned rank = gray_rank(rotate_left(octant ^ entry, (3 - turn) % 3));
-            const unsigned inner = entry ^ rotate_left(entry_corner(rank), turn);
-            h->rank[cube][octant] = (uint8_t)rank;
-            h->cube[cube][octant] = (uint8_t)(8 * ((turn + exit_axis(rank)) % 3) + inner);
+        for (unsigned bits = 0; bits < 64; bits++) {
+            const octant_step outer = find_octant(cube, (bits >> 1 & 1) | (bits >> 2 & 2) |
+                                                            (bits >> 3 & 4)),
+                              inner = find_octant(outer.cube, (bits & 1) | (bits >> 1 & 2) |
+                                                                  (bits >> 2 & 4));
+            h->steps[cube][bits] =
+                (octant_step){(uint8_t)(outer.rank << 3 | inner.rank), inner.cube};
         }
 }
 
@@ -69,11 +92,12 @@ static uint64_t find_rank(const hilbert *h, const uint32_t cell[3])
 {
     unsigned cube = 0;
     uint64_t rank = 0;
-    for (int bit = KEY_BITS - 1; bit >= 0; bit--) {
-        const unsigned octant =
-            (cell[0] >> bit & 1) | (cell[1] >> bit & 1) << 1 | (cell[2] >> bit & 1) << 2;
-        rank = rank << 3 | h->rank[cube][octant];
-        cube = h->cube[cube][octant];
+    for (int bit = KEY_BITS - 2; bit >= 0; bit -= 2) {
+        const unsigned bits =
+            (cell[0] >> bit & 3) | (cell[1] >> bit & 3) << 2 | (cell[2] >> bit & 3) << 4;
+        const octant_step step = h->steps[cube][bits];
+        rank = rank << 6 | step.rank;
+        cube = step.cube;
     }
     return rank;
 }
@@ -81,30 +105,80 @@ static uint64_t find_rank(const hilbert *h, const uint32_t cell[3])
 /* Returns twice the middle of a box along an axis; of a box that is endless, of its part within all numbers. */
 static double find_middle(const float box[6], int a)
 {
-    return fmax((double)box[a], (double)-FLT_MAX) + fmin((double)box[a + 3], (double)FLT_MAX);
+    const float low = box[a] > -FLT_MAX ? box[a] : -FLT_MAX,
+                high = box[a + 3] < FLT_MAX ? box[a + 3] : FLT_MAX;
+    return (double)low + (double)high;
 }
 
-/* Sets each key: the rank of the box's middle on the curve through a cube of 2^16 cells an
- * edge. */
-static void set_keys(const float (*boxes)[6], size_t count, keyed *keys)
-{
-    double low[3] = {INFINITY, INFINITY, INFINITY}, high = 0;
+/* Boxes on their way into a tree; threads take chunks of them. */
+typedef struct building {
+    cwi_boxes *tree;
+    const float (*boxes)[6];
+    size_t count, chunks;
+    int threads;
     hilbert curve;
-    make_curve(&curve);
-    for (size_t n = 0; n < count; n++)
-        for (int a = 0; a < 3; a++)
-            low[a] = fmin(low[a], find_middle(boxes[n], a));
-    for (size_t n = 0; n < count; n++)
-        for (int a = 0; a < 3; a++)
-            high = fmax(high, find_middle(boxes[n], a) - low[a]);
-    const double scale = high > 0 ? ((1 << KEY_BITS) - 1) / high : 0;
-    for (size_t n = 0; n < count; n++) {
+    double low[3], scale; /* of the cube of 2^16 cells an edge */
+    keyed *keys, *sorted;
+    uint32_t (*starts)[BUCKETS]; /* chunks: where its keys of each bucket go */
+} building;
+
+static size_t chunk_end(const building *b, size_t k)
+{
+    return k + 1 < b->chunks ? (k + 1) * CHUNK : b->count;
+}
+
+static unsigned get_bucket(const keyed *k)
+{
+    return (unsigned)(k->key >> LOW_BITS);
+}
+
+/* Sets the keys of a chunk: the ranks of the boxes' middles on the curve. Counts its buckets. */
+static void set_keys(void *context, size_t k)
+{
+    building *b = context;
+    memset(b->starts[k], 0, sizeof b->starts[k]);
+    for (size_t n = k * CHUNK; n < chunk_end(b, k); n++) {
         uint32_t cell[3];
-        for (int a = 0; a < 3; a++) {
-            cell[a] = (uint32_t)((find_middle(boxes[n], a) - low[a]) * scale);
-        }
-        keys[n] = (keyed){find_rank(&curve, cell), (uint32_t)n};
+        for (int a = 0; a < 3; a++)
+            cell[a] = (uint32_t)((find_middle(b->boxes[n], a) - b->low[a]) * b->scale);
+        b->keys[n] = (keyed){find_rank(&b->curve, cell), (uint32_t)n};
+        b->starts[k][get_bucket(&b->keys[n])]++;
     }
+}
+
+static void find_cube(building *b)
+{
+    double high = 0;
+    for (int a = 0; a < 3; a++)
+        b->low[a] = INFINITY;
+    for (size_t n = 0; n < b->count; n++)
+        for (int a = 0; a < 3; a++)
+            b->low[a] = cwi_lesser(b->low[a], find_middle(b->boxes[n], a));
+    for (size_t n = 0; n < b->count; n++)
+        for (int a = 0; a < 3; a++)
+            high = cwi_greater(high, find_middle(b->boxes[n], a) - b->low[a]);
+    b->scale = high > 0 ? ((1 << KEY_BITS) - 1) / high : 0;
+}
+
+/* --- sorting ------------------------------------------------------------------------------ */
+
+/* Turns the counts of each chunk into the places where its keys go. */
+static void find_places(building *b)
+{
+    uint32_t sum = 0;
+    for (size_t bucket = 0; bucket < BUCKETS; bucket++)
+        for (size_t k = 0; k < b->chunks; k++) {
+            const uint32_t here = b->starts[k][bucket];
+            b->starts[k][bucket] = sum;
+            sum += here;
+        }
+}
+
+static void deal_out_keys(void *context, size_t k)
+{
+    building *b = context;
+    for (size_t n = k * CHUNK; n < chunk_end(b, k); n++)
+        b->sorted[b->starts[k][get_bucket(&b->keys[n])]++] = b->keys[n];
 }
 
 static int compare_keyed(const void *x, const void *y)
@@ -114,44 +188,51 @@ static int compare_keyed(const void *x, const void *y)
                             : (a->item > b->item) - (a->item < b->item);
 }
 
-/* Radix-sorts by 16 bits of the key at a time; the order of equal keys is kept. Returns false
- * when memory is out. */
-static bool radix_sort_keys(keyed **keys, size_t count)
+static unsigned get_digit(const keyed *k, int pass)
 {
-    enum { DIGITS = 1 << 16 };
-    keyed *other = cwi_alloc_array(count, sizeof *other);
-    size_t *starts = cwi_alloc_array(DIGITS, sizeof *starts);
-    const bool ok = other && starts;
-    for (int shift = 0; shift < 48 && ok; shift += 16) {
-        memset(starts, 0, DIGITS * sizeof *starts);
-        for (size_t n = 0; n < count; n++)
-            starts[(*keys)[n].key >> shift & (DIGITS - 1)]++;
-        for (size_t d = 0, sum = 0; d < DIGITS; d++) {
-            const size_t here = starts[d];
-            starts[d] = sum;
+    return (unsigned)(k->key >> pass * DIGIT_BITS) & (DIGITS - 1);
+}
+
+/* Sorts keys by their lower bits, a digit at a time; the order of equal keys is kept.
+ * other  as many */
+static void radix_sort(keyed *keys, keyed *other, size_t count)
+{
+    uint32_t starts[PASSES][DIGITS] = {{0}};
+    for (size_t n = 0; n < count; n++)
+        for (int pass = 0; pass < PASSES; pass++)
+            starts[pass][get_digit(&keys[n], pass)]++;
+    for (int pass = 0; pass < PASSES; pass++) {
+        for (uint32_t d = 0, sum = 0; d < DIGITS; d++) {
+            const uint32_t here = starts[pass][d];
+            starts[pass][d] = sum;
             sum += here;
         }
         for (size_t n = 0; n < count; n++)
-            other[starts[(*keys)[n].key >> shift & (DIGITS - 1)]++] = (*keys)[n];
+            other[starts[pass][get_digit(&keys[n], pass)]++] = keys[n];
         keyed *sorted = other;
-        other = *keys;
-        *keys = sorted;
+        other = keys;
+        keys = sorted;
     }
-    cwi_free(other);
-    cwi_free(starts);
-    return ok;
 }
 
-/* Few keys are compared with each other, as the digits of a radix sort would outnumber them. The
- * order is the same. Returns false when memory is out. */
-static bool sort_keys(keyed **keys, size_t count)
+/* Sorts a bucket, and writes its items. Few keys are compared with each other, as digits would outnumber
+ * them; the order is the same. */
+static void sort_bucket(void *context, size_t bucket)
 {
-    enum { FEW = 1 << 12 };
+    building *b = context;
+    enum { FEW = 1 << 8 };
+    const uint32_t *ends =
+        b->starts[b->chunks - 1]; /* the last chunk's keys are the last ones */
+    const size_t first = bucket ? ends[bucket - 1] : 0, count = ends[bucket] - first;
     if (count > FEW)
-        return radix_sort_keys(keys, count);
-    qsort(*keys, count, sizeof **keys, compare_keyed);
-    return true;
+        radix_sort(b->sorted + first, b->keys + first, count);
+    else
+        qsort(b->sorted + first, count, sizeof *b->sorted, compare_keyed);
+    for (size_t n = first; n < first + count; n++)
+        b->tree->order[n] = b->sorted[n].item;
 }
+
+/* --- levels ------------------------------------------------------------------------------- */
 
 void cwi_boxes_around(const cwi_boxes_node *n, float box[6])
 {
@@ -159,21 +240,23 @@ void cwi_boxes_around(const cwi_boxes_node *n, float box[6])
         box[a] = n->low[a][0];
         box[a + 3] = n->high[a][0];
         for (int c = 1; c < CWI_WIDTH; c++) {
-            box[a] = fminf(box[a], n->low[a][c]);
-            box[a + 3] = fmaxf(box[a + 3], n->high[a][c]);
+            box[a] = n->low[a][c] < box[a] ? n->low[a][c] : box[a];
+            box[a + 3] = n->high[a][c] > box[a + 3] ? n->high[a][c] : box[a + 3];
         }
     }
 }
 
-static void fill_level(cwi_boxes *t, const float (*boxes)[6], int level, size_t children)
+/* Fills nodes of a level with its children from `first` to `end`, and the last one with empty boxes. */
+static void fill_nodes(const building *b, int level, size_t first, size_t end)
 {
     const float empty[6] = {INFINITY, INFINITY, INFINITY, -INFINITY, -INFINITY, -INFINITY};
+    cwi_boxes *t = b->tree;
     cwi_boxes_node *nodes = t->nodes + t->first[level];
     float box[6];
-    size_t c = 0;
-    for (; c < children; c++)
+    size_t c = first;
+    for (; c < end; c++)
         if (level == 0) {
-            cwi_boxes_put(nodes, c, boxes[t->order[c]]);
+            cwi_boxes_put(nodes, c, b->boxes[t->order[c]]);
         } else {
             cwi_boxes_around(t->nodes + t->first[level - 1] + c, box);
             cwi_boxes_put(nodes, c, box);
@@ -182,16 +265,24 @@ static void fill_level(cwi_boxes *t, const float (*boxes)[6], int level, size_t 
         cwi_boxes_put(nodes, c, empty);
 }
 
-static void fill_boxes(cwi_boxes *t, const float (*boxes)[6])
+static void fill_items(void *context, size_t k)
 {
+    fill_nodes(context, 0, k * CHUNK, chunk_end(context, k));
+}
+
+static void fill_levels(building *b)
+{
+    cwi_boxes *t = b->tree;
     size_t children = t->count;
-    for (int level = 0; level < t->levels; level++) {
-        fill_level(t, boxes, level, children);
+    cwi_parallel_for_all(b->chunks, CHUNK, b->threads, fill_items, b);
+    for (int level = 1; level < t->levels; level++) {
         children = (children + CWI_WIDTH - 1) / CWI_WIDTH;
+        fill_nodes(b, level, 0, children);
     }
-    for (size_t n = 0; n < t->count; n++)
-        for (int a = 0; a < 6; a++)
-            t->max = fmaxf(t->max, fabsf(boxes[n][a]));
+    float around[6];
+    cwi_boxes_around(t->nodes + t->first[t->levels - 1], around);
+    for (int a = 0; a < 6; a++)
+        t->max = fabsf(around[a]) > t->max ? fabsf(around[a]) : t->max;
 }
 
 /* Lays out the levels; returns the number of nodes. */
@@ -206,23 +297,51 @@ static size_t plan_levels(cwi_boxes *t)
     return nodes;
 }
 
+static void free_keys(building *b)
+{
+    cwi_free(b->keys);
+    cwi_free(b->sorted);
+    cwi_free(b->starts);
+    b->keys = b->sorted = NULL;
+    b->starts = NULL;
+}
+
+static bool alloc_building(building *b)
+{
+    cwi_boxes *t = b->tree;
+    t->nodes = cwi_alloc_array(plan_levels(t), sizeof *t->nodes);
+    t->order = cwi_alloc_array(t->count, sizeof *t->order);
+    b->keys = cwi_alloc_array(t->count, sizeof *b->keys);
+    b->sorted = cwi_alloc_array(t->count, sizeof *b->sorted);
+    b->starts = cwi_alloc_array(b->chunks, sizeof *b->starts);
+    return t->nodes && t->order && b->keys && b->sorted && b->starts;
+}
+
 cw_status cwi_boxes_build(cwi_boxes *tree, const float (*boxes)[6], size_t count, cw_error *err)
 {
+    return cwi_boxes_build_by(tree, boxes, count, 1, err);
+}
+
+cw_status cwi_boxes_build_by(cwi_boxes *tree, const float (*boxes)[6], size_t count,
+                             int threads, cw_error *err)
+{
+    building b = {.tree = tree, .boxes = boxes, .count = count, .threads = threads};
     *tree = (cwi_boxes){.count = count};
     if (!count)
         return CW_OK;
-    tree->nodes = cwi_alloc_array(plan_levels(tree), sizeof *tree->nodes);
-    tree->order = cwi_alloc_array(count, sizeof *tree->order);
-    keyed *keys = cwi_alloc_array(count, sizeof *keys);
-    bool ok = tree->nodes && tree->order && keys;
-    if (ok)
-        set_keys(boxes, count, keys);
-    ok = ok && sort_keys(&keys, count);
-    for (size_t n = 0; n < count && ok; n++)
-        tree->order[n] = keys[n].item;
-    if (ok)
-        fill_boxes(tree, boxes);
-    cwi_free(keys);
+    b.chunks = (count + CHUNK - 1) / CHUNK;
+    const bool ok = alloc_building(&b);
+    if (ok) {
+        make_curve(&b.curve);
+        find_cube(&b);
+        cwi_parallel_for_all(b.chunks, CHUNK, threads, set_keys, &b);
+        find_places(&b);
+        cwi_parallel_for_all(b.chunks, CHUNK, threads, deal_out_keys, &b);
+        cwi_parallel_for_all(BUCKETS, count / BUCKETS, threads, sort_bucket, &b);
+        free_keys(&b); /* before memory of nodes is touched */
+        fill_levels(&b);
+    }
+    free_keys(&b);
     if (ok)
         return CW_OK;
     cwi_boxes_free(tree);

@@ -41,6 +41,10 @@ typedef struct cwi_boxes {
  * Source   the curve's ranks [Hamilton2006] */
 CW_NODISCARD cw_status cwi_boxes_build(cwi_boxes *tree, const float (*boxes)[6], size_t count,
                                        cw_error *err);
+
+/* Does the same with a number of threads; 0: the default number. The tree is the same. */
+CW_NODISCARD cw_status cwi_boxes_build_by(cwi_boxes *tree, const float (*boxes)[6],
+                                          size_t count, int threads, cw_error *err);
 void cwi_boxes_free(cwi_boxes *tree);
 
 /* Calls visit for each node of level 0 that may hold boxes sharing a point with this box. It

@@ -188,19 +188,22 @@ static int exact_orient2d(const float *a, const float *b, const float *c, int x,
     return sign_of_sum(&s);
 }
 
-int cwi_orient2d(const float a[3], const float b[3], const float c[3], int axis)
+static int settle_orient2d(const float *a, const float *b, const float *c, int x, int y)
 {
-    const double unit = DBL_EPSILON / 2, error_factor = (3 + 16 * unit) * unit;
-    const int x = (axis + 1) % 3, y = (axis + 2) % 3;
     const double left = ((double)a[x] - (double)c[x]) * ((double)b[y] - (double)c[y]);
     const double right = ((double)a[y] - (double)c[y]) * ((double)b[x] - (double)c[x]);
-    const double value = left - right;
-    if (fabs(value) > error_factor * (fabs(left) + fabs(right)) || (left == 0 && right == 0))
-        return sign_of(value);
     int sign;
+    if (left == 0 && right == 0)
+        return 0;
     return whole_orient2d((const float *[3]){a, b, c}, x, y, &sign)
                ? sign
                : exact_orient2d(a, b, c, x, y);
+}
+
+int cwi_orient2d(const float a[3], const float b[3], const float c[3], int axis)
+{
+    const int sign = cwi_sure_orient2d(a, b, c, axis);
+    return sign ? sign : settle_orient2d(a, b, c, (axis + 1) % 3, (axis + 2) % 3);
 }
 
 int cwi_seen_along(const float a[3], const float b[3], const float c[3])

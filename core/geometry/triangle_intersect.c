@@ -6,8 +6,12 @@
 
 bool cwi_has_area(const float *points, const uint32_t v[3])
 {
-    return cwi_seen_along(points + 3 * (size_t)v[0], points + 3 * (size_t)v[1],
-                          points + 3 * (size_t)v[2]) >= 0;
+    const float *a = points + 3 * (size_t)v[0], *b = points + 3 * (size_t)v[1],
+                *c = points + 3 * (size_t)v[2];
+    for (int axis = 0; axis < 3; axis++)
+        if (cwi_sure_orient2d(a, b, c, axis))
+            return true;
+    return cwi_seen_along(a, b, c) >= 0;
 }
 
 /* A triangle by its corners. */

@@ -7,6 +7,7 @@
 #include "simplify/printing/wall_rays.h"
 
 #include "core/base/memory.h"
+#include "core/base/parallel.h"
 #include "core/base/status.h"
 #include "core/geometry/vec3.h"
 #include "core/mesh/mesh.h"
@@ -169,16 +170,17 @@ static void spread_to_vertices(const cw_mesh *mesh, const uint32_t *map, const f
         out[v] = out[map[v]];
 }
 
-static cw_status measure_walls(const cw_mesh *mesh, const uint32_t *map,
+static cw_status measure_walls(cwi_wall_field *field, const cw_mesh *mesh, const uint32_t *map,
                                const cw_print_desc *limits, cw_print_facts *facts,
                                cw_error *err)
 {
     cwi_wall_sum walls, gaps;
-    float *wall = cwi_alloc_array(mesh->triangle_count, sizeof *wall),
-          *gap = cwi_alloc_array(mesh->triangle_count, sizeof *gap);
-    cw_status st = wall && gap ? CW_OK : cwi_fail_memory(err);
+    float *wall = limits->wall ? cwi_alloc_array(mesh->triangle_count, sizeof *wall) : NULL,
+          *gap = limits->gap ? cwi_alloc_array(mesh->triangle_count, sizeof *gap) : NULL;
+    const bool ok = (wall || !limits->wall) && (gap || !limits->gap);
+    cw_status st = ok ? CW_OK : cwi_fail_memory(err);
     if (st == CW_OK)
-        st = cwi_measure_walls(mesh, limits, wall, gap, &walls, &gaps, err);
+        st = cwi_measure_walls(field, wall, gap, &walls, &gaps, err);
     if (st == CW_OK) {
         facts->wall_mm = walls.min_mm;
         facts->thin_mm2 = walls.below;
@@ -196,28 +198,74 @@ static cw_status measure_walls(const cw_mesh *mesh, const uint32_t *map,
     return st;
 }
 
+/* Independent measurements before rays are cast; threads take one each. */
+enum { WALL_FIELD, ISLANDS, STAND, PREPARATIONS };
+
+typedef struct preparation {
+    const cw_mesh *mesh;
+    const cw_print_desc *limits;
+    double low[3], high[3];
+    cw_print_facts *facts;
+    cwi_wall_field *field;
+    cwi_islands islands;
+    cw_status status[PREPARATIONS];
+    cw_error errors[PREPARATIONS];
+} preparation;
+
+static void prepare_one(void *context, size_t k)
+{
+    preparation *p = context;
+    cw_error *err = &p->errors[k];
+    if (k == WALL_FIELD)
+        p->status[k] = cwi_wall_field_new(p->mesh, p->limits, &p->field, err);
+    else if (k == ISLANDS)
+        p->status[k] =
+            cwi_find_islands(p->mesh, p->low[2], p->limits->layer_mm, &p->islands, err);
+    else {
+        sum_triangles(p->mesh, p->limits, p->low, p->high, p->facts);
+        p->status[k] = measure_stand(p->mesh, p->limits, p->low[2], p->facts, err);
+    }
+}
+
+static cw_status prepare_all(preparation *p, cw_error *err)
+{
+    const cw_mesh *mesh = p->mesh;
+    cwi_box_clear(p->low, p->high);
+    for (size_t c = 0; c < 3 * mesh->triangle_count; c++)
+        cwi_box_add_points(p->low, p->high, mesh->positions + 3 * (size_t)mesh->triangles[c],
+                           1);
+    cwi_parallel_for_all(PREPARATIONS, mesh->triangle_count, p->limits->threads, prepare_one,
+                         p);
+    for (int k = 0; k < PREPARATIONS; k++)
+        if (p->status[k] != CW_OK) {
+            if (err)
+                *err = p->errors[k];
+            return p->status[k];
+        }
+    return CW_OK;
+}
+
+static void take_islands(const cw_mesh *mesh, const cwi_islands *islands, cw_print_facts *facts)
+{
+    facts->islands = islands->count;
+    for (size_t a = 0; a < 3 && islands->count; a++)
+        facts->island_at[a] = (double)mesh->positions[3 * (size_t)islands->vertex + a];
+}
+
 /* Measures what a welded mesh tells. It loses its cavities at last. */
 static cw_status measure_welded(cw_mesh *mesh, const uint32_t *map, const cw_print_desc *limits,
                                 cw_print_facts *facts, cw_error *err)
 {
-    double low[3], high[3];
-    cwi_islands islands;
+    preparation p = {.mesh = mesh, .limits = limits, .facts = facts};
     cw_drop_counts voids = {0};
-    cwi_box_clear(low, high);
-    for (size_t c = 0; c < 3 * mesh->triangle_count; c++)
-        cwi_box_add_points(low, high, mesh->positions + 3 * (size_t)mesh->triangles[c], 1);
-    sum_triangles(mesh, limits, low, high, facts);
-    cw_status st = measure_stand(mesh, limits, low[2], facts, err);
+    cw_status st = prepare_all(&p, err);
     if (st == CW_OK)
-        st = measure_walls(mesh, map, limits, facts, err);
-    if (st == CW_OK)
-        st = cwi_find_islands(mesh, low[2], limits->layer_mm, &islands, err);
+        st = measure_walls(p.field, mesh, map, limits, facts, err);
+    cwi_wall_field_free(p.field);
     if (st != CW_OK)
         return st;
-    facts->islands = islands.count;
-    for (size_t a = 0; a < 3 && islands.count; a++)
-        facts->island_at[a] = (double)mesh->positions[3 * (size_t)islands.vertex + a];
-    const double size[3] = {high[0] - low[0], high[1] - low[1], high[2] - low[2]};
+    take_islands(mesh, &p.islands, facts);
+    const double size[3] = {p.high[0] - p.low[0], p.high[1] - p.low[1], p.high[2] - p.low[2]};
     facts->fits = fits_plate(size, limits->plate_mm);
     st = cw_mesh_fill_voids(mesh, limits->threads, &voids, err);
     facts->trapped = voids.dropped;

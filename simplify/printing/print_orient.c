@@ -7,9 +7,8 @@
 #include "core/geometry/vec3.h"
 #include "core/mesh/mesh.h"
 #include "core/mesh/mesh_triangle.h"
-#include "simplify/printing/outline.h"
+#include "simplify/printing/pose_search.h"
 #include "simplify/printing/print_limits.h"
-#include "simplify/printing/rest_pose.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -18,33 +17,11 @@
 /* Directions that are compared; those from which the mesh rolls, besides the normals of flat parts; poses that are
  * measured. */
 enum { DIRECTIONS = 10000, STARTS = 96, FLAT_STARTS = 64, AXES = 6, POSES = 32, CHUNK = 100 };
+
 enum { CUBE_EDGE = 24, BINS = 6 * CUBE_EDGE * CUBE_EDGE };
 
 /* Areas and heights that differ by less than this fraction count as equal. */
 static const double EQUAL = 1e-3;
-
-/* Triangles whose normals are in one cell of a cube around the origin. */
-typedef struct normal_bin {
-    double area, normal[3];
-} normal_bin;
-
-typedef struct candidate {
-    double down[3], overhang; /* estimated */
-    cw_print_stand stand;     /* measured */
-    bool fits;
-} candidate;
-
-typedef struct search {
-    const cw_mesh *mesh;
-    cw_print_desc limits;
-    cwi_rest_body body; /* all vertices that triangles name, and the centre of mass */
-    double steep, area, diagonal;
-    normal_bin *bins;
-    size_t bin_count;
-    candidate *directions, *poses;
-    size_t pose_count;
-    bool no_memory;
-} search;
 
 /* --- the histogram ------------------------------------------------------------------------ */
 
@@ -60,7 +37,8 @@ static size_t find_bin(const double n[3])
 }
 
 /* Adds up normals, the volume and its centre. */
-static void sum_normals(search *s, const double from[3], double *volume, double moment[3])
+static void sum_normals(cwi_pose_search *s, const double from[3], double *volume,
+                        double moment[3])
 {
     for (size_t t = 0; t < s->mesh->triangle_count; t++) {
         double corner[3][3], normal[3], p[3][3];
@@ -74,7 +52,7 @@ static void sum_normals(search *s, const double from[3], double *volume, double 
             moment[a] += part * (p[0][a] + p[1][a] + p[2][a]) / 4;
         if (!(length > 0))
             continue;
-        normal_bin *bin = &s->bins[find_bin(normal)];
+        cwi_normal_bin *bin = &s->bins[find_bin(normal)];
         bin->area += length / 2;
         for (int a = 0; a < 3; a++)
             bin->normal[a] += normal[a];
@@ -82,7 +60,7 @@ static void sum_normals(search *s, const double from[3], double *volume, double 
     }
 }
 
-static cw_status make_histogram(search *s, cw_error *err)
+static cw_status make_histogram(cwi_pose_search *s, cw_error *err)
 {
     double low[3], high[3], middle[3], volume = 0, moment[3] = {0};
     s->bins = cwi_alloc_zeroed(BINS, sizeof *s->bins);
@@ -105,7 +83,7 @@ static cw_status make_histogram(search *s, cw_error *err)
 
 /* Estimates the area of overhangs, without what faces straight down, if flat parts are assumed to stand on the
  * plate. */
-static double estimate_overhang(const search *s, const double down[3], bool stands)
+static double estimate_overhang(const cwi_pose_search *s, const double down[3], bool stands)
 {
     const double flat = 0.9986; /* the cosine of 3 degrees */
     double sum = 0;
@@ -119,10 +97,10 @@ static double estimate_overhang(const search *s, const double down[3], bool stan
 
 static void estimate_chunk(void *context, size_t chunk)
 {
-    search *s = context;
+    cwi_pose_search *s = context;
     const double golden = CWI_PI * (3 - sqrt(5));
     for (size_t n = chunk * CHUNK; n < (chunk + 1) * CHUNK; n++) {
-        candidate *c = &s->directions[n];
+        cwi_pose *c = &s->directions[n];
         const double z = 1 - (2 * (double)n + 1) / DIRECTIONS, r = sqrt(1 - z * z);
         c->down[0] = r * cos(golden * (double)n);
         c->down[1] = r * sin(golden * (double)n);
@@ -135,7 +113,7 @@ static void estimate_chunk(void *context, size_t chunk)
 
 static int compare_candidates(const void *a, const void *b)
 {
-    const candidate *p = a, *q = b;
+    const cwi_pose *p = a, *q = b;
     if (p->overhang != q->overhang)
         return p->overhang < q->overhang ? -1 : 1;
     return memcmp(p->down, q->down, sizeof p->down);
@@ -143,13 +121,13 @@ static int compare_candidates(const void *a, const void *b)
 
 static int compare_bins(const void *a, const void *b)
 {
-    const normal_bin *p = a, *q = b;
+    const cwi_normal_bin *p = a, *q = b;
     if (p->area != q->area)
         return p->area > q->area ? -1 : 1;
     return memcmp(p->normal, q->normal, sizeof p->normal);
 }
 
-static bool is_near(const candidate *list, size_t count, const double down[3], double cosine)
+static bool is_near(const cwi_pose *list, size_t count, const double down[3], double cosine)
 {
     for (size_t n = 0; n < count; n++)
         if (cwi_dot(list[n].down, down) > cosine)
@@ -157,13 +135,13 @@ static bool is_near(const candidate *list, size_t count, const double down[3], d
     return false;
 }
 
-static void add_start(search *s, const double down[3])
+static void add_start(cwi_pose_search *s, const double down[3])
 {
     memcpy(s->poses[s->pose_count++].down, down, sizeof s->poses->down);
 }
 
 /* Lists where the mesh begins to roll: the best directions, 8 degrees apart, flat parts, the axes. */
-static void list_starts(search *s)
+static void list_starts(cwi_pose_search *s)
 {
     const double apart = 0.9903; /* the cosine of 8 degrees */
     qsort(s->directions, DIRECTIONS, sizeof *s->directions, compare_candidates);
@@ -181,7 +159,7 @@ static void list_starts(search *s)
 }
 
 typedef struct rolling {
-    search *s;
+    cwi_pose_search *s;
     const cwi_rest_body *body;
 } rolling;
 
@@ -192,14 +170,14 @@ static void roll_one(void *context, size_t n)
         cwi_set_flag(&r->s->no_memory);
 }
 
-static void roll_all(search *s, const cwi_rest_body *body)
+static void roll_all(cwi_pose_search *s, const cwi_rest_body *body)
 {
     rolling r = {s, body};
     cwi_parallel_for_all(s->pose_count, body->count, s->limits.threads, roll_one, &r);
 }
 
 /* Keeps poses that differ by half a degree, the best by their estimate. */
-static void keep_best_poses(search *s, size_t max)
+static void keep_best_poses(cwi_pose_search *s, size_t max)
 {
     size_t kept = 0;
     for (size_t n = 0; n < s->pose_count; n++)
@@ -211,99 +189,10 @@ static void keep_best_poses(search *s, size_t max)
     s->pose_count = kept;
 }
 
-/* --- measuring ---------------------------------------------------------------------------- */
-
-/* Makes two directions that are perpendicular to one, and to each other. */
-static void make_axes(const double down[3], double x[3], double y[3])
-{
-    double other[3] = {0};
-    other[fabs(down[0]) < 0.6 ? 0 : 1] = 1;
-    cwi_cross(down, other, x);
-    cwi_to_unit(x);
-    cwi_cross(x, down, y);
-}
-
-static void measure_hull(search *s, candidate *c, double bottom)
-{
-    double x[3], y[3];
-    const cwi_rest_body *b = &s->body;
-    size_t count = 0;
-    make_axes(c->down, x, y);
-    for (size_t n = 0; n < b->count; n++)
-        count += bottom - cwi_dot(b->points[n], c->down) < s->limits.layer_mm;
-    cwi_plan_point *points = cwi_alloc_array(count, sizeof *points),
-                   *hull = cwi_alloc_array(2 * count + 2, sizeof *hull);
-    if (!points || !hull)
-        cwi_set_flag(&s->no_memory);
-    else {
-        count = 0;
-        for (size_t n = 0; n < b->count; n++)
-            if (bottom - cwi_dot(b->points[n], c->down) < s->limits.layer_mm)
-                points[count++] =
-                    (cwi_plan_point){cwi_dot(b->points[n], x), cwi_dot(b->points[n], y)};
-        const size_t corners = cwi_find_outline(points, count, hull);
-        const double high = bottom - cwi_dot(b->center, c->down),
-                     margin = cwi_outline_margin(
-                         hull, corners,
-                         &(cwi_plan_point){cwi_dot(b->center, x), cwi_dot(b->center, y)});
-        c->stand.hull_mm2 = cwi_outline_area(hull, corners);
-        c->stand.tip_deg = margin > 0 && high > 0 ? atan2(margin, high) * 180 / CWI_PI : 0;
-    }
-    cwi_free(points);
-    cwi_free(hull);
-}
-
-static bool fits_plate(const search *s, const double down[3], double height)
-{
-    const double *plate = s->limits.plate_mm;
-    double turn[12], low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
-    if (plate[0] == 0)
-        return true;
-    cwi_turn_down(down, turn);
-    for (size_t n = 0; n < s->body.count; n++)
-        for (int a = 0; a < 2; a++) {
-            const double at = cwi_dot(turn + 4 * a, s->body.points[n]);
-            low[a] = cwi_lesser(low[a], at);
-            high[a] = cwi_greater(high[a], at);
-        }
-    const double x = high[0] - low[0], y = high[1] - low[1];
-    return height <= plate[2] &&
-           ((x <= plate[0] && y <= plate[1]) || (x <= plate[1] && y <= plate[0]));
-}
-
-/* Measures a pose exactly. */
-static void measure_pose(void *context, size_t n)
-{
-    search *s = context;
-    candidate *c = &s->poses[n];
-    double bottom = -INFINITY, top = INFINITY;
-    c->stand = (cw_print_stand){0};
-    for (size_t p = 0; p < s->body.count; p++) {
-        const double at = cwi_dot(s->body.points[p], c->down);
-        bottom = cwi_greater(bottom, at);
-        top = cwi_lesser(top, at);
-    }
-    for (size_t t = 0; t < s->mesh->triangle_count; t++) {
-        double corner[3][3], normal[3];
-        cwi_mesh_normal(s->mesh, t, normal);
-        const double along = cwi_dot(normal, c->down), length = cwi_length(normal);
-        if (!(along > s->steep * length))
-            continue;
-        cwi_mesh_corners(s->mesh, t, corner);
-        bool on_plate = true;
-        for (int k = 0; k < 3; k++)
-            on_plate = on_plate && bottom - cwi_dot(corner[k], c->down) < s->limits.layer_mm;
-        c->stand.overhang_mm2 += on_plate ? 0 : length / 2;
-    }
-    for (int a = 0; a < 3; a++)
-        c->stand.up[a] = c->down[a] == 0 ? 0 : -c->down[a];
-    c->stand.height_mm = bottom - top;
-    c->fits = fits_plate(s, c->down, c->stand.height_mm);
-    measure_hull(s, c, bottom);
-}
+/* --- choosing ----------------------------------------------------------------------------- */
 
 /* Returns true if a pose is better than another one. */
-static bool is_better(const search *s, const candidate *a, const candidate *b)
+static bool is_better(const cwi_pose_search *s, const cwi_pose *a, const cwi_pose *b)
 {
     const bool stable[2] = {a->stand.tip_deg >= CW_MIN_TIP_DEG,
                             b->stand.tip_deg >= CW_MIN_TIP_DEG};
@@ -325,7 +214,7 @@ static bool is_better(const search *s, const candidate *a, const candidate *b)
 }
 
 /* Returns true if a pose is better than the present one by more than what counts as equal. */
-static bool is_worth_turning(const search *s, const candidate *a, const candidate *now)
+static bool is_worth_turning(const cwi_pose_search *s, const cwi_pose *a, const cwi_pose *now)
 {
     const bool stands = now->stand.tip_deg >= CW_MIN_TIP_DEG;
     if (a->stand.tip_deg < CW_MIN_TIP_DEG && a->fits == now->fits)
@@ -343,7 +232,7 @@ static bool is_worth_turning(const search *s, const candidate *a, const candidat
 
 /* --- the call ----------------------------------------------------------------------------- */
 
-static cw_status find_poses(search *s, cw_error *err)
+static cw_status find_poses(cwi_pose_search *s, cw_error *err)
 {
     cwi_rest_body few = {0};
     s->directions = cwi_alloc_zeroed(DIRECTIONS, sizeof *s->directions);
@@ -351,6 +240,10 @@ static cw_status find_poses(search *s, cw_error *err)
     cw_status st = s->directions && s->poses ? CW_OK : cwi_fail_memory(err);
     if (st == CW_OK)
         st = cwi_rest_body_thin(&s->body, &few, err);
+    if (st == CW_OK)
+        st = cwi_rest_body_drop_inner(&few, 0, err);
+    if (st == CW_OK)
+        st = cwi_rest_body_drop_inner(&s->body, s->limits.layer_mm, err);
     if (st == CW_OK) {
         cwi_parallel_for_all(DIRECTIONS / CHUNK, CHUNK * s->bin_count, s->limits.threads,
                              estimate_chunk, s);
@@ -365,15 +258,14 @@ static cw_status find_poses(search *s, cw_error *err)
 }
 
 /* Measures the poses, and the present one first. */
-static void choose_pose(search *s, cw_orient_facts *facts)
+static void choose_pose(cwi_pose_search *s, cw_orient_facts *facts)
 {
     size_t best = 0;
     for (size_t n = s->pose_count; n > 0; n--)
         s->poses[n] = s->poses[n - 1];
     s->pose_count++;
     memcpy(s->poses[0].down, (const double[3]){0, 0, -1}, sizeof s->poses[0].down);
-    cwi_parallel_for_all(s->pose_count, s->mesh->triangle_count, s->limits.threads,
-                         measure_pose, s);
+    cwi_measure_poses(s);
     for (size_t n = 0; n < s->pose_count; n++) {
         facts->unstable += s->poses[n].stand.tip_deg < CW_MIN_TIP_DEG;
         if (is_better(s, &s->poses[n], &s->poses[best]))
@@ -406,7 +298,7 @@ cw_status cw_orient_print(const cw_mesh *mesh, const cw_print_desc *desc,
 {
     CWI_REQUIRE(err, mesh, facts);
     CWI_REQUIRE_VERSION(err, desc, 0);
-    search s = {.mesh = mesh};
+    cwi_pose_search s = {.mesh = mesh};
     *facts = (cw_orient_facts){0};
     cw_status st = cwi_print_limits(desc, &s.limits, err);
     if (st == CW_OK)

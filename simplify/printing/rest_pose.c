@@ -11,7 +11,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { MAX_ROLLS = 64, COLUMNS = 48 };
+enum { MAX_ROLLS = 64, COLUMNS = 48, GRID = 64 };
 
 /* Points count as touching the plate within this fraction of the body's size. */
 static const double TOUCH = 1e-5;
@@ -89,6 +89,100 @@ cw_status cwi_rest_body_thin(const cwi_rest_body *body, cwi_rest_body *few, cw_e
     return ok ? CW_OK : cwi_fail_memory(err);
 }
 
+/* --- inner points ------------------------------------------------------------------------- */
+
+/* Cells that hold points, or have such a property: bit x of row y of slice z. */
+typedef struct cell_bits {
+    uint64_t rows[GRID][GRID];
+} cell_bits;
+
+static void find_cell(const double p[3], const double low[3], const double high[3],
+                      size_t cell[3])
+{
+    for (int a = 0; a < 3; a++) {
+        const double at = (p[a] - low[a]) / (high[a] - low[a]) * GRID;
+        cell[a] = at > 0 ? at < GRID ? (size_t)at : GRID - 1 : 0;
+    }
+}
+
+/* Sets the cells from which some set cell is ahead, or beside them, along all axes.
+ * is_up  the direction along x, y and z */
+static void spread_back(cell_bits *c, const bool is_up[3])
+{
+    for (int z = 0; z < GRID; z++)
+        for (int y = 0; y < GRID; y++)
+            for (int by = 1; by < GRID; by *= 2) {
+                uint64_t *row = &c->rows[z][y];
+                *row |= is_up[0] ? *row >> by : *row << by;
+            }
+    for (int z = 0; z < GRID; z++)
+        for (int n = 1; n < GRID; n++) {
+            const int y = is_up[1] ? GRID - 1 - n : n;
+            c->rows[z][y] |= c->rows[z][is_up[1] ? y + 1 : y - 1];
+        }
+    for (int n = 1; n < GRID; n++) {
+        const int z = is_up[2] ? GRID - 1 - n : n;
+        for (int y = 0; y < GRID; y++)
+            c->rows[z][y] |= c->rows[is_up[2] ? z + 1 : z - 1][y];
+    }
+}
+
+/* Keeps cells that have a set cell two cells away, or more, along all axes. */
+static void keep_two_behind(cell_bits *kept, const cell_bits *spread, const bool is_up[3])
+{
+    for (int z = 0; z < GRID; z++)
+        for (int y = 0; y < GRID; y++) {
+            const int y_ahead = is_up[1] ? y + 2 : y - 2, z_ahead = is_up[2] ? z + 2 : z - 2;
+            const bool is_in = y_ahead >= 0 && y_ahead < GRID && z_ahead >= 0 && z_ahead < GRID;
+            const uint64_t ahead = is_in ? spread->rows[z_ahead][y_ahead] : 0;
+            kept->rows[z][y] &= is_up[0] ? ahead >> 2 : ahead << 2;
+        }
+}
+
+/* Finds cells that are deep inside the convex hull of the points: whichever way one looks from there,
+ * one of the eight octants leads that way, and has a point at least a cell away along each axis. */
+static void find_inner_cells(const cell_bits *taken, cell_bits *spread, cell_bits *inner)
+{
+    memset(inner, 0xff, sizeof *inner);
+    for (int octant = 0; octant < 8; octant++) {
+        const bool is_up[3] = {octant & 1, octant & 2, octant & 4};
+        *spread = *taken;
+        spread_back(spread, is_up);
+        keep_two_behind(inner, spread, is_up);
+    }
+}
+
+cw_status cwi_rest_body_drop_inner(cwi_rest_body *body, double depth, cw_error *err)
+{
+    double low[3], high[3];
+    size_t kept = 0;
+    cwi_box_clear(low, high);
+    for (size_t n = 0; n < body->count; n++)
+        cwi_box_add(low, high, body->points[n]);
+    const double touch = TOUCH * cwi_distance(low, high);
+    for (int a = 0; a < 3; a++)
+        if (!(high[a] - low[a] > 2 * GRID * cwi_greater(depth, touch)))
+            return CW_OK;
+    cell_bits *bits = cwi_alloc_zeroed(3, sizeof *bits);
+    if (!bits)
+        return cwi_fail_memory(err);
+    for (size_t n = 0; n < body->count; n++) {
+        size_t cell[3];
+        find_cell(body->points[n], low, high, cell);
+        bits[0].rows[cell[2]][cell[1]] |= UINT64_C(1) << cell[0];
+    }
+    find_inner_cells(&bits[0], &bits[1], &bits[2]);
+    for (size_t n = 0; n < body->count; n++) {
+        size_t cell[3];
+        find_cell(body->points[n], low, high, cell);
+        if (!(bits[2].rows[cell[2]][cell[1]] >> cell[0] & 1))
+            memcpy(body->points[kept++], body->points[n], sizeof *body->points);
+    }
+    body->count = kept;
+    cwi_free(bits);
+    return CW_OK;
+}
+
 /* --- rolling ------------------------------------------------------------------------------ */
 
 typedef struct roll {
@@ -122,12 +216,12 @@ static size_t tip_over(roll *r, const double at[3], const double axis[3], const 
         double q[3];
         cwi_sub(r->body->points[n], at, q);
         const double depth = cwi_greater(-cwi_dot(q, r->down), 0), ahead = cwi_dot(q, side);
+        if (hit != SIZE_MAX && ahead * best[1] <= depth * best[0])
+            continue;
         const double along = is_edge ? 0 : cwi_dot(q, axis);
         if (depth * depth + ahead * ahead + along * along <= r->touch * r->touch ||
             (depth == 0 && ahead <= 0))
             continue; /* on the axis, or on the plate behind it */
-        if (hit != SIZE_MAX && ahead * best[1] <= depth * best[0])
-            continue;
         best[0] = ahead;
         best[1] = depth;
         hit = n;

@@ -20,6 +20,11 @@ CW_NODISCARD cw_status cwi_rest_body_thin(const cwi_rest_body *body, cwi_rest_bo
                                           cw_error *err);
 void cwi_rest_body_free(cwi_rest_body *body);
 
+/* Drops points that are deeper than `depth` inside the convex hull of all, as far as a coarse grid
+ * tells: in no pose they come near the plate. */
+CW_NODISCARD cw_status cwi_rest_body_drop_inner(cwi_rest_body *body, double depth,
+                                                cw_error *err);
+
 /* Lets a body roll from where a direction points down, until its centre of mass is above the hull of what
  * touches the plate.
  * down     of length 1; set to the direction of the pose

@@ -7,10 +7,10 @@
 #include "core/base/status.h"
 #include "core/geometry/box.h"
 #include "core/geometry/bvh_segment.h"
-#include "core/geometry/triangle.h"
 #include "core/geometry/vec3.h"
 #include "core/mesh/mesh_triangle.h"
 #include "core/mesh/triangle_boxes.h"
+#include "simplify/printing/ray_lengths.h"
 
 #include <string.h>
 
@@ -24,9 +24,6 @@ static const double MAX_SLIVER_POINTS = 4;
 enum { AROUND = 6 };
 static const double OFF_DEG = 5;
 
-/* How near the end of a ray must be to facing it: sharper edges are no walls. */
-static const double FACING_DEG = 30;
-
 /* The normal of a point is that between the vertices' normals where all three agree with the
  * triangle; else there is an edge, and it is the triangle's. Thin triangles may face anywhere: those
  * lower than this fraction of their longest side need vertices that agree with each other. */
@@ -35,118 +32,66 @@ static const double SMOOTH_DEG = 30, THIN = 0.2;
 /* Triangles farther than this off the normals of all their vertices are not measured, either. */
 static const double ASTRAY_DEG = 60;
 
-/* Times the way to a hit: boxes up to there may hold one that is nearer, as rounding goes. */
-static const double BEYOND = 1 + 1e-5;
-
 /* In limits: the walls that get the rays around, and the widest gaps that are looked for. */
 static const double REACH = 4;
 
 /* Triangles that one thread measures at a time, and most parts along a side of one. */
 enum { PART = 1 << 10, MAX_PARTS = 1000 };
 
-typedef struct ray_field {
+struct cwi_wall_field {
     const cw_mesh *mesh;
     const cw_print_desc *limits;
-    cwi_boxes tree;
-    float *normals; /* vertices x 3; 0 where there is none */
-    float *wall, *gap;
+    cwi_wall_target target;
+    float *normals;             /* vertices x 3; 0 where there is none */
+    float *wall, *gap;          /* of each triangle; may be NULL */
+    bool seeks_thinnest;        /* nothing but the thinnest wall of each part */
     cwi_wall_sum *walls, *gaps; /* of each part */
     double step;                /* between points, mm */
     bool shares_points;         /* triangles lower than a step share points */
     double diagonal;
-    float slack;
     size_t parts;
-} ray_field;
-
-/* --- one ray ------------------------------------------------------------------------------ */
-
-typedef struct ray {
-    const ray_field *field;
-    size_t own; /* the triangle that it starts on */
-    double from[3], vector[3];
-    double fraction; /* of the vector, to the first hit so far */
-    cwi_boxes_segment segment;
-    size_t hit;
-} ray;
-
-static double meet_triangle(const ray *r, size_t triangle)
-{
-    double p[3][3];
-    cwi_mesh_corners(r->field->mesh, triangle, p);
-    return cwi_triangle_ray((const double(*)[3])p, r->from, r->vector);
-}
-
-static bool visit_triangle(void *context, size_t slot)
-{
-    ray *r = context;
-    const size_t triangle = r->field->tree.order[slot];
-    if (triangle == r->own)
-        return true;
-    const double fraction = meet_triangle(r, triangle);
-    if (fraction > 0 && fraction < r->fraction) {
-        r->fraction = fraction;
-        r->segment.reach = (float)cwi_lesser(1, BEYOND * fraction);
-        r->hit = triangle;
-    }
-    return true;
-}
-
-/* Returns the length of a ray to the surface, up to `max_reach`, or INFINITY: where it meets none, or where
- * the surface does not face it. Looks near by first, as long rays meet many boxes.
- * side  1: the ray leaves the solid there; -1: it enters */
-static double cast_ray(const ray_field *f, size_t own, const double from[3],
-                       const double direction[3], double side, double first, double max_reach)
-{
-    ray r = {.field = f, .own = own, .hit = SIZE_MAX};
-    memcpy(r.from, from, sizeof r.from);
-    for (double reach = cwi_lesser(first, max_reach);;
-         reach = cwi_lesser(4 * reach, max_reach)) {
-        for (int a = 0; a < 3; a++)
-            r.vector[a] = reach * direction[a];
-        r.segment = cwi_boxes_segment_of(r.from, r.vector, f->slack);
-        r.fraction = 1;
-        cwi_boxes_pierce(&f->tree, &r.segment, visit_triangle, &r);
-        if (r.hit != SIZE_MAX) {
-            double p[3][3], normal[3];
-            cwi_mesh_corners(f->mesh, r.hit, p);
-            cwi_triangle_normal(p[0], p[1], p[2], normal);
-            const bool faces = cwi_normalise(normal) && side * cwi_dot(normal, direction) >=
-                                                            cos(FACING_DEG * CWI_PI / 180);
-            return faces ? r.fraction * reach : INFINITY;
-        }
-        if (reach >= max_reach)
-            return INFINITY;
-    }
-}
+};
 
 /* --- a point ------------------------------------------------------------------------------ */
 
-/* Returns the wall or gap at a point. direction: unit, into it */
-static double measure_point(const ray_field *f, size_t own, const double from[3],
-                            const double direction[3], double side, double limit,
-                            double max_reach)
+/* Returns the wall or gap at a point: the least of its first ray and of those around that.
+ * first_mm  the length of the first ray
+ * direction  unit, of the first ray */
+static double look_around(const cwi_wall_field *f, const cwi_ray_start *start,
+                          const double direction[3], int end, double limit, double first_mm)
 {
-    double length_mm = cast_ray(f, own, from, direction, side, REACH * limit, max_reach);
-    if (!(length_mm < REACH * limit))
-        return length_mm;
-    double across[2][3];
-    const double along = cos(OFF_DEG * CWI_PI / 180), off = sin(OFF_DEG * CWI_PI / 180);
-    cwi_find_across(direction, across);
-    for (int n = 0; n < AROUND; n++) {
-        const double turn = 2 * CWI_PI * n / AROUND;
-        double d[3];
-        for (int a = 0; a < 3; a++)
-            d[a] = along * direction[a] +
-                   off * (cos(turn) * across[0][a] + sin(turn) * across[1][a]);
-        length_mm =
-            cwi_lesser(length_mm, cast_ray(f, own, from, d, side, length_mm, length_mm));
+    const cwi_ray_cone cone = {AROUND, OFF_DEG * CWI_PI / 180};
+    return first_mm < REACH * limit
+               ? cwi_shortest_around(&f->target, start, direction, end, &cone, first_mm)
+               : first_mm;
+}
+
+/* Measures the wall at a point, and the gap unless only the thinnest wall is sought.
+ * relevant  longer walls do not matter */
+static void measure_point(const cwi_wall_field *f, const cwi_ray_start *start,
+                          const double normal[3], double relevant, double *wall, double *gap)
+{
+    const double limits[2] = {f->limits->min_wall_mm, f->limits->min_gap_mm},
+                 reach[2] = {cwi_lesser(REACH * limits[0], f->diagonal), REACH * limits[1]},
+                 inward[3] = {-normal[0], -normal[1], -normal[2]};
+    double lengths[2] = {-1, -1}, next = reach[0];
+    if (!f->seeks_thinnest) {
+        cwi_ray_lengths(&f->target, start, normal, reach, lengths);
+        next = 4 * reach[0];
+        if (lengths[0] < 0 && reach[0] >= cwi_lesser(relevant, f->diagonal))
+            lengths[0] = INFINITY;
+        *gap = look_around(f, start, normal, CWI_RAY_ENTERS, limits[1],
+                           lengths[1] < 0 ? INFINITY : lengths[1]);
     }
-    return length_mm;
+    if (lengths[0] < 0)
+        lengths[0] = cwi_ray_length(&f->target, start, inward, CWI_RAY_LEAVES, next,
+                                    f->diagonal, relevant);
+    *wall = look_around(f, start, inward, CWI_RAY_LEAVES, limits[0], lengths[0]);
 }
 
 /* Finds the normal of a point of a triangle. Returns false where there is none that can be relied on.
  * weights  of the corners   flat  of the triangle, unit   is_thin  its own normal may be anything */
-static bool find_normal(const ray_field *f, size_t triangle, const double weights[3],
+static bool find_normal(const cwi_wall_field *f, size_t triangle, const double weights[3],
                         const double flat[3], bool is_thin, double normal[3])
 {
     const double smooth = cos(SMOOTH_DEG * CWI_PI / 180);
@@ -206,8 +151,8 @@ static size_t count_parts(double length, double step)
 
 /* Where slivers would get far too many points, triangles lower than a step share them: each gets as many as its area is
  * worth, at least one, at places of its own. */
-static point_grid divide_triangle(const ray_field *f, size_t triangle, const double p[3][3],
-                                  double twice_area)
+static point_grid divide_triangle(const cwi_wall_field *f, size_t triangle,
+                                  const double p[3][3], double twice_area)
 {
     const double step = f->step;
     point_grid g = {0};
@@ -231,10 +176,20 @@ static point_grid divide_triangle(const ray_field *f, size_t triangle, const dou
     return g;
 }
 
-static void measure_triangle(ray_field *f, size_t triangle, cwi_wall_sum *walls,
+/* Returns the length beyond which walls do not matter: where a triangle's wall is not requested, and
+ * some are thinner. */
+static double find_relevant_wall(const cwi_wall_field *f, const cwi_wall_sum *walls)
+{
+    return f->wall             ? INFINITY
+           : f->seeks_thinnest ? walls->min_mm
+                               : REACH * f->limits->min_wall_mm;
+}
+
+static void measure_triangle(cwi_wall_field *f, size_t triangle, cwi_wall_sum *walls,
                              cwi_wall_sum *gaps)
 {
     double p[3][3], flat[3];
+    cwi_ray_start start = {.triangle = triangle};
     cwi_mesh_corners(f->mesh, triangle, p);
     cwi_triangle_normal(p[0], p[1], p[2], flat);
     const double twice = cwi_length(flat);
@@ -246,34 +201,34 @@ static void measure_triangle(ray_field *f, size_t triangle, cwi_wall_sum *walls,
         for (size_t n = 0; n < g.columns * g.rows; n++) {
             const double along = ((double)(n % g.columns) + g.start) / (double)g.columns,
                          up = 1 - sqrt(1 - ((double)(n / g.columns) + 0.5) / (double)g.rows);
-            double weights[3], at[3], normal[3], inward[3];
+            double weights[3], normal[3], wall = INFINITY, gap = INFINITY;
             weights[g.apex] = up;
             weights[(g.apex + 1) % 3] = (1 - up) * (1 - along);
             weights[(g.apex + 2) % 3] = (1 - up) * along;
             for (int a = 0; a < 3; a++)
-                at[a] = weights[0] * p[0][a] + weights[1] * p[1][a] + weights[2] * p[2][a];
+                start.at[a] =
+                    weights[0] * p[0][a] + weights[1] * p[1][a] + weights[2] * p[2][a];
             if (!find_normal(f, triangle, weights, flat, g.is_thin, normal))
                 break;
-            for (int a = 0; a < 3; a++)
-                inward[a] = -normal[a];
-            const double wall = measure_point(f, triangle, at, inward, 1, limits->min_wall_mm,
-                                              f->diagonal),
-                         gap = measure_point(f, triangle, at, normal, -1, limits->min_gap_mm,
-                                             REACH * limits->min_gap_mm);
-            add_measure(walls, wall, limits->min_wall_mm, at, area);
-            add_measure(gaps, gap, limits->min_gap_mm, at, area);
+            measure_point(f, &start, normal, find_relevant_wall(f, walls), &wall, &gap);
+            add_measure(walls, wall, limits->min_wall_mm, start.at, area);
+            add_measure(gaps, gap, limits->min_gap_mm, start.at, area);
             min_mm[0] = cwi_lesser(min_mm[0], wall);
             min_mm[1] = cwi_lesser(min_mm[1], gap);
         }
     }
-    f->wall[triangle] = (float)min_mm[0];
-    f->gap[triangle] = (float)min_mm[1];
+    if (f->wall)
+        f->wall[triangle] = (float)min_mm[0];
+    if (f->gap && !f->seeks_thinnest)
+        f->gap[triangle] = (float)min_mm[1];
 }
 
 static void measure_part(void *context, size_t k)
 {
-    ray_field *f = context;
-    f->walls[k] = f->gaps[k] = (cwi_wall_sum){.min_mm = INFINITY};
+    cwi_wall_field *f = context;
+    f->walls[k] = (cwi_wall_sum){.min_mm = INFINITY};
+    if (!f->seeks_thinnest)
+        f->gaps[k] = f->walls[k];
     for (size_t t = k * PART; t < (k + 1) * PART && t < f->mesh->triangle_count; t++)
         measure_triangle(f, t, &f->walls[k], &f->gaps[k]);
 }
@@ -281,7 +236,7 @@ static void measure_part(void *context, size_t k)
 /* --- all ---------------------------------------------------------------------------------- */
 
 /* Returns how many points there are where each triangle has its own. */
-static double count_points(const ray_field *f)
+static double count_points(const cwi_wall_field *f)
 {
     double sum = 0;
     for (size_t t = 0; t < f->mesh->triangle_count; t++) {
@@ -298,7 +253,7 @@ static double count_points(const ray_field *f)
 }
 
 /* Finds the normals of vertices, weighted by area, and the step between points. */
-static void prepare_points(ray_field *f)
+static void prepare_points(cwi_wall_field *f)
 {
     const cw_mesh *mesh = f->mesh;
     double twice = 0, low[3], high[3];
@@ -326,16 +281,38 @@ static void prepare_points(ray_field *f)
     f->step = sqrt(twice / 2 / POINTS);
     f->shares_points =
         count_points(f) > MAX_SLIVER_POINTS * fmax(POINTS, (double)mesh->triangle_count);
-    f->slack = f->tree.max * 0x1p-20f;
+    f->target.slack = f->target.tree.max * 0x1p-20f;
 }
 
-static cw_status alloc_field(ray_field *f, cw_error *err)
+cw_status cwi_wall_field_new(const cw_mesh *mesh, const cw_print_desc *limits,
+                             cwi_wall_field **field, cw_error *err)
 {
-    f->parts = (f->mesh->triangle_count + PART - 1) / PART;
-    f->normals = cwi_alloc_zeroed(f->mesh->vertex_count, 3 * sizeof *f->normals);
+    cwi_wall_field *f = *field = cwi_alloc_zeroed(1, sizeof *f);
+    if (!f)
+        return cwi_fail_memory(err);
+    *f = (cwi_wall_field){.mesh = mesh, .target = {.mesh = mesh}, .limits = limits};
+    f->parts = (mesh->triangle_count + PART - 1) / PART;
+    f->normals = cwi_alloc_zeroed(mesh->vertex_count, 3 * sizeof *f->normals);
     f->walls = cwi_alloc_array(f->parts, sizeof *f->walls);
     f->gaps = cwi_alloc_array(f->parts, sizeof *f->gaps);
-    return f->normals && f->walls && f->gaps ? CW_OK : cwi_fail_memory(err);
+    cw_status st = f->normals && f->walls && f->gaps ? CW_OK : cwi_fail_memory(err);
+    if (st == CW_OK && mesh->triangle_count)
+        st = cwi_triangle_boxes_build(&f->target.tree, mesh->positions, mesh->vertex_count,
+                                      mesh->triangles, mesh->triangle_count, err);
+    if (st == CW_OK)
+        prepare_points(f);
+    return st;
+}
+
+void cwi_wall_field_free(cwi_wall_field *f)
+{
+    if (!f)
+        return;
+    cwi_boxes_free(&f->target.tree);
+    cwi_free(f->normals);
+    cwi_free(f->walls);
+    cwi_free(f->gaps);
+    cwi_free(f);
 }
 
 /* Adds up parts in their order, so that threads do not matter. */
@@ -351,26 +328,27 @@ static void add_parts(const cwi_wall_sum *parts, size_t count, cwi_wall_sum *sum
     }
 }
 
-cw_status cwi_measure_walls(const cw_mesh *mesh, const cw_print_desc *limits, float *wall,
-                            float *gap, cwi_wall_sum *walls, cwi_wall_sum *gaps, cw_error *err)
+static cw_status measure_parts(cwi_wall_field *f, cw_error *err)
 {
-    ray_field f = {.mesh = mesh, .limits = limits, .wall = wall, .gap = gap};
-    cw_status st = alloc_field(&f, err);
-    if (st == CW_OK && mesh->triangle_count)
-        st = cwi_triangle_boxes_build(&f.tree, mesh->positions, mesh->vertex_count,
-                                      mesh->triangles, mesh->triangle_count, err);
-    if (st == CW_OK) {
-        prepare_points(&f);
-        st = cwi_parallel_for(f.parts, 1 << 16, limits->threads, &limits->progress, "walls",
-                              measure_part, &f, err);
-    }
-    if (st == CW_OK) {
-        add_parts(f.walls, f.parts, walls);
-        add_parts(f.gaps, f.parts, gaps);
-    }
-    cwi_boxes_free(&f.tree);
-    cwi_free(f.normals);
-    cwi_free(f.walls);
-    cwi_free(f.gaps);
+    return cwi_parallel_for(f->parts, 1 << 16, f->limits->threads, &f->limits->progress,
+                            "walls", measure_part, f, err);
+}
+
+cw_status cwi_measure_walls(cwi_wall_field *f, float *wall, float *gap, cwi_wall_sum *walls,
+                            cwi_wall_sum *gaps, cw_error *err)
+{
+    f->wall = wall;
+    f->gap = gap;
+    cw_status st = measure_parts(f, err);
+    if (st != CW_OK)
+        return st;
+    add_parts(f->gaps, f->parts, gaps);
+    add_parts(f->walls, f->parts, walls);
+    if (f->wall || walls->min_mm < INFINITY)
+        return CW_OK;
+    f->seeks_thinnest = true; /* all rays ended where walls are thick */
+    st = measure_parts(f, err);
+    if (st == CW_OK)
+        add_parts(f->walls, f->parts, walls);
     return st;
 }

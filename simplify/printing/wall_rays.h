@@ -12,15 +12,24 @@ typedef struct cwi_wall_sum {
     double below;  /* mm2: area below the limit */
 } cwi_wall_sum;
 
-/* Measures at points spread over the surface.
+/* The points of a surface, and the tree of its triangles. */
+typedef struct cwi_wall_field cwi_wall_field;
+
+/* Prepares the measurement. Free the field, also after a failure; it borrows mesh and limits.
  * mesh     welded
  * limits   with their defaults
- * wall     triangle_count: the thinnest wall of each, or INFINITY
+ * Returns  CW_ERR_NO_MEMORY */
+CW_NODISCARD cw_status cwi_wall_field_new(const cw_mesh *mesh, const cw_print_desc *limits,
+                                          cwi_wall_field **field, cw_error *err);
+void cwi_wall_field_free(cwi_wall_field *field);
+
+/* Measures at points spread over the surface, once for each field.
+ * wall     triangle_count: the thinnest wall of each, or INFINITY; NULL: not requested, which is faster
  * gap      the same of gaps
  * walls, gaps  set
- * Returns  CW_ERR_NO_MEMORY; CW_ERR_CANCELLED */
-CW_NODISCARD cw_status cwi_measure_walls(const cw_mesh *mesh, const cw_print_desc *limits,
-                                         float *wall, float *gap, cwi_wall_sum *walls,
-                                         cwi_wall_sum *gaps, cw_error *err);
+ * Returns  CW_ERR_CANCELLED */
+CW_NODISCARD cw_status cwi_measure_walls(cwi_wall_field *field, float *wall, float *gap,
+                                         cwi_wall_sum *walls, cwi_wall_sum *gaps,
+                                         cw_error *err);
 
 #endif

@@ -4,6 +4,7 @@
 #include "core/geometry/union_find.h"
 #include "core/geometry/vec3.h"
 #include "core/mesh/mesh.h"
+#include "simplify/quality/topology.h"
 
 #include <cubewright/quality.h>
 
@@ -101,7 +102,7 @@ static cw_status drop_components(voids *v, bool inside, int threads, cw_drop_cou
     cw_quality q;
     memset(v->defects, 0, v->mesh->triangle_count);
     const cw_quality_desc desc = {.shells = inside, .threads = threads, .defects = v->defects};
-    cw_status st = cw_quality_measure(v->mesh, &desc, &q, err);
+    cw_status st = cwi_measure_topology(v->mesh, &desc, &q, err);
     if (st != CW_OK)
         return st;
     measure_components(v);

@@ -1,6 +1,6 @@
 /* The cheap checks: everything that one pass over the triangles around each vertex can say of a
  * mesh. */
-#include <cubewright/quality.h>
+#include "simplify/quality/topology.h"
 
 #include "core/base/memory.h"
 #include "core/base/status.h"
@@ -175,11 +175,9 @@ static void free_work(work *w)
     cwi_free(w->unbounded);
 }
 
-cw_status cw_quality_measure(const cw_mesh *mesh, const cw_quality_desc *desc, cw_quality *out,
-                             cw_error *err)
+static cw_status measure(const cw_mesh *mesh, const cw_quality_desc *desc, bool with_shapes,
+                         cw_quality *out, cw_error *err)
 {
-    CWI_REQUIRE(err, mesh, out);
-    CWI_REQUIRE_VERSION(err, desc, 0);
     cw_quality_desc d = desc ? *desc : (cw_quality_desc){0};
     const cw_progress progress = d.progress;
     work w = {0};
@@ -188,8 +186,8 @@ cw_status cw_quality_measure(const cw_mesh *mesh, const cw_quality_desc *desc, c
     cw_quality q = {.vertices = mesh->vertex_count, .triangles = mesh->triangle_count};
     memset(out, 0, sizeof *out);
     cw_status st = cwi_welded_init(&w.welded, mesh, d.weld, err);
-    const bool measured =
-        st == CW_OK && measure_topology(&w, &d, &q) && cwi_measure_shapes(&w.welded, &d, &q);
+    const bool measured = st == CW_OK && measure_topology(&w, &d, &q) &&
+                          (!with_shapes || cwi_measure_shapes(&w.welded, &d, &q));
     if (st == CW_OK && w.stop.stopped)
         st = cwi_fail(err, CW_ERR_CANCELLED, "interrupted while checking");
     else if (st == CW_OK && !measured)
@@ -200,6 +198,20 @@ cw_status cw_quality_measure(const cw_mesh *mesh, const cw_quality_desc *desc, c
     }
     free_work(&w);
     return st;
+}
+
+cw_status cwi_measure_topology(const cw_mesh *mesh, const cw_quality_desc *desc,
+                               cw_quality *out, cw_error *err)
+{
+    return measure(mesh, desc, false, out, err);
+}
+
+cw_status cw_quality_measure(const cw_mesh *mesh, const cw_quality_desc *desc, cw_quality *out,
+                             cw_error *err)
+{
+    CWI_REQUIRE(err, mesh, out);
+    CWI_REQUIRE_VERSION(err, desc, 0);
+    return measure(mesh, desc, true, out, err);
 }
 
 size_t cw_quality_bytes(size_t vertices, size_t triangles)

@@ -49,7 +49,7 @@ cw_status cwi_welded_init(cwi_welded *w, const cw_mesh *mesh, cw_weld how, cw_er
     return st;
 }
 
-bool cwi_welded_sort(const cwi_welded *w, const uint32_t *fan_of, cwi_boxes *tree)
+bool cwi_welded_sort(const cwi_welded *w, const uint32_t *fan_of, int threads, cwi_boxes *tree)
 {
     const size_t count = w->mesh->triangle_count;
     float(*boxes)[6] = cwi_alloc_large(count, sizeof *boxes);
@@ -61,7 +61,7 @@ bool cwi_welded_sort(const cwi_welded *w, const uint32_t *fan_of, cwi_boxes *tre
             cwi_boxes_triangle(w->points, w->vertex + 3 * t, boxes[kept]);
             triangle[kept++] = (uint32_t)t;
         }
-    ok = ok && cwi_boxes_build(tree, (const float(*)[6])boxes, kept, NULL) == CW_OK;
+    ok = ok && cwi_boxes_build_by(tree, (const float(*)[6])boxes, kept, threads, NULL) == CW_OK;
     for (size_t n = 0; n < kept && ok; n++)
         tree->order[n] = triangle[tree->order[n]];
     cwi_free(boxes);

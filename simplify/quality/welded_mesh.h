@@ -25,8 +25,10 @@ void cwi_welded_free(cwi_welded *welded);
 
 /* Sorts the triangles by place: the tree's order holds triangles. Those without area stay out, and
  * those of a fan. Free the tree; false when memory is out.
- * fan_of  triangles: their fan, or CWI_NO_FAN; NULL: none has one */
-bool cwi_welded_sort(const cwi_welded *welded, const uint32_t *fan_of, struct cwi_boxes *tree);
+ * fan_of   triangles: their fan, or CWI_NO_FAN; NULL: none has one
+ * threads  0: the default number */
+bool cwi_welded_sort(const cwi_welded *welded, const uint32_t *fan_of, int threads,
+                     struct cwi_boxes *tree);
 
 /* A triangle that names a vertex twice has no edges to speak of. */
 static inline bool cwi_is_collapsed(const cwi_welded *welded, size_t triangle)

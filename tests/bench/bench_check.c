@@ -2,11 +2,13 @@
  *
  * bench_check [SIZE [RUNS]]
  *
+ * Times are those of the processor on one thread, and of the clock on two.
  * Prints a JSON line a mesh and number of threads: spheres and gyroids of SIZE^3 voxels (256),
  * extracted; noise as well, at half the size. */
 #define _DEFAULT_SOURCE /* clock_gettime */
 #include <cubewright/cubewright.h>
 
+#include "bench.h"
 #include "cgal_bench.h"
 
 #include <math.h>
@@ -21,9 +23,11 @@ typedef struct times {
     double ms[MAX_RUNS];
 } times;
 
-static double now_ms(void)
+static double now_ms(int threads)
 {
     struct timespec t;
+    if (threads == 1)
+        return bench_cpu_ms();
     clock_gettime(CLOCK_MONOTONIC, &t);
     return 1e3 * (double)t.tv_sec + 1e-6 * (double)t.tv_nsec;
 }
@@ -59,31 +63,31 @@ static void run_once(const cw_mesh *mesh, const cw_volume *volume, int threads, 
     cw_error err = {0};
     cw_quality quality;
     cw_crossings x;
-    double t = now_ms();
+    double t = now_ms(threads);
     stop_on(cw_quality_measure(mesh, &(cw_quality_desc){.threads = threads, .shells = true},
                                &quality, &err),
             &err);
-    r->measure.ms[r->measure.count++] = now_ms() - t;
-    t = now_ms();
+    r->measure.ms[r->measure.count++] = now_ms(threads) - t;
+    t = now_ms(threads);
     stop_on(cw_self_intersections(mesh, &(cw_crossings_desc){.threads = threads}, &x, &err),
             &err);
-    r->crossings.ms[r->crossings.count++] = now_ms() - t;
+    r->crossings.ms[r->crossings.count++] = now_ms(threads) - t;
     r->pairs = x.count;
     cw_crossings_free(&x);
     const double cgal = bench_cgal_intersections(mesh, threads, &r->cgal_pairs);
     if (cgal >= 0)
         r->cgal.ms[r->cgal.count++] = cgal;
-    t = now_ms();
+    t = now_ms(threads);
     stop_on(cw_distance_to_field(mesh, volume, &(cw_field_distance_desc){.threads = threads},
                                  &r->distance, NULL, &err),
             &err);
-    r->field.ms[r->field.count++] = now_ms() - t;
-    t = now_ms();
+    r->field.ms[r->field.count++] = now_ms(threads) - t;
+    t = now_ms(threads);
     cw_distance self;
     stop_on(cw_distance_to_mesh(mesh, mesh, &(cw_mesh_distance_desc){.threads = threads}, &self,
                                 NULL, &err),
             &err);
-    r->mesh.ms[r->mesh.count++] = now_ms() - t;
+    r->mesh.ms[r->mesh.count++] = now_ms(threads) - t;
 }
 
 static void bench(const char *name, const cw_field_desc *field, int runs)

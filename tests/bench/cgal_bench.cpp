@@ -39,15 +39,22 @@ Surface to_surface(const cw_mesh &mesh)
     return surface;
 }
 
-template <typename Tag> double measure(const Surface &surface, size_t *pairs)
+double wall_ms()
+{
+    const std::chrono::duration<double, std::milli> now =
+        std::chrono::steady_clock::now().time_since_epoch();
+    return now.count();
+}
+
+template <typename Tag>
+double measure(const Surface &surface, double (*now_ms)(), size_t *pairs)
 {
     Pairs found;
-    const auto start = std::chrono::steady_clock::now();
+    const double start = now_ms();
     CGAL::Polygon_mesh_processing::self_intersections<Tag>(surface, std::back_inserter(found));
-    const std::chrono::duration<double, std::milli> spent =
-        std::chrono::steady_clock::now() - start;
+    const double spent = now_ms() - start;
     *pairs = found.size();
-    return spent.count();
+    return spent;
 }
 
 } // namespace
@@ -58,12 +65,12 @@ double bench_cgal_intersections(const cw_mesh *mesh, int threads, size_t *pairs)
 #ifdef CGAL_LINKED_WITH_TBB
     tbb::global_control limit(tbb::global_control::max_allowed_parallelism, size_t(threads));
     if (threads > 1)
-        return measure<CGAL::Parallel_tag>(surface, pairs);
+        return measure<CGAL::Parallel_tag>(surface, wall_ms, pairs);
 #else
     if (threads > 1)
         return -1;
 #endif
-    return measure<CGAL::Sequential_tag>(surface, pairs);
+    return measure<CGAL::Sequential_tag>(surface, bench_cpu_ms, pairs);
 }
 
 double bench_cgal_boolean(const cw_mesh *a, const cw_mesh *b, int op, double *volume)

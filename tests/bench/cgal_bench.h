@@ -9,8 +9,8 @@ extern "C" {
 #endif
 
 /* Milliseconds of CGAL's self_intersections() on a mesh that is a manifold, its own data
- * structure being made already; with more than one thread by TBB, where CGAL has it. Negative:
- * not in this build. */
+ * structure being made already: processor time on one thread. With more than one thread time by the
+ * clock, by TBB, where CGAL has it. Negative: not in this build. */
 double bench_cgal_intersections(const cw_mesh *mesh, int threads, size_t *pairs);
 
 /* Makes the union, difference or intersection (0, 1, 2) of closed meshes by corefinement, on one

@@ -357,6 +357,60 @@ static void threads_units_and_sharing_do_not_matter(void **state)
     cwi_free(other);
 }
 
+/* Compares what is measured with and without the widths at each vertex. */
+static void compare_with_widths(const cw_mesh *m, cw_print_desc desc)
+{
+    float *wall = malloc(m->vertex_count * sizeof *wall),
+          *gap = malloc(m->vertex_count * sizeof *gap),
+          *alone = malloc(m->vertex_count * sizeof *alone);
+    assert_true(wall && gap && alone);
+    desc.wall = desc.gap = NULL;
+    const cw_print_facts plain = measure_print(m, &desc);
+    desc.wall = wall;
+    desc.gap = gap;
+    const cw_print_facts full = measure_print(m, &desc);
+    assert_memory_equal(&plain, &full, sizeof plain);
+    desc.wall = NULL;
+    desc.gap = alone;
+    const cw_print_facts gaps = measure_print(m, &desc);
+    assert_memory_equal(&plain, &gaps, sizeof plain);
+    assert_memory_equal(gap, alone, m->vertex_count * sizeof *gap);
+    float min_mm = INFINITY;
+    for (size_t v = 0; v < m->vertex_count; v++)
+        min_mm = fminf(min_mm, wall[v]);
+    assert_true(min_mm == (float)plain.wall_mm);
+    free(wall);
+    free(gap);
+    free(alone);
+}
+
+/* Rays end where walls are thick unless each vertex wants its own wall: thick and thin walls, gaps, and
+ * slabs that lean, so that rays around the first one count. */
+static void widths_at_vertices_change_no_figure(void **state)
+{
+    (void)state;
+    const double wedge[4][2] = {{10, 0}, {10.1, 0}, {14, 20}, {10, 20}};
+    for (double t = 0.5; t < 40; t *= 4) {
+        cw_mesh boxes = make_empty(), ring = make_empty();
+        BOX(&boxes, 0, 0, 0, 20, 20, t);
+        BOX(&boxes, 0, 0, t + 0.3, 20, 20, 2 * t + 0.3);
+        add_ring(&ring, wedge, 4, 60);
+        for (double limit = 0.2; limit < 20; limit *= 7) {
+            const cw_print_desc desc = {.min_wall_mm = limit, .min_gap_mm = limit};
+            compare_with_widths(&boxes, desc);
+            compare_with_widths(&ring, desc);
+        }
+        cw_mesh_free(&boxes);
+        cw_mesh_free(&ring);
+    }
+    cw_volume volume = test_sample(CW_FIELD_GYROID, 32, CW_F32);
+    cw_mesh m = test_extract(&volume, NULL, NULL);
+    for (double limit = 0.1; limit < 100; limit *= 5)
+        compare_with_widths(&m, (cw_print_desc){.min_wall_mm = limit, .min_gap_mm = limit});
+    cw_mesh_free(&m);
+    cw_volume_free(&volume);
+}
+
 /* Open, flat and empty meshes, and triangles without area: no crash, and numbers that are finite. */
 static void odd_meshes_are_measured(void **state)
 {
@@ -448,6 +502,7 @@ int main(void)
         cmocka_unit_test(what_is_off_its_foot_tips_over),
         cmocka_unit_test(plates_are_turned_by_90_degrees),
         cmocka_unit_test(threads_units_and_sharing_do_not_matter),
+        cmocka_unit_test(widths_at_vertices_change_no_figure),
         cmocka_unit_test(odd_meshes_are_measured),
         cmocka_unit_test(bad_arguments_are_named),
         cmocka_unit_test(memory_failures_and_cancelling_are_told),

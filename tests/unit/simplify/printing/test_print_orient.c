@@ -2,7 +2,9 @@
 #include "support/solids.h"
 
 #include "core/base/memory.h"
+#include "core/geometry/vec3.h"
 #include "core/mesh/mesh.h"
+#include "simplify/printing/rest_pose.h"
 
 #include <cubewright/print.h>
 
@@ -230,6 +232,71 @@ static void what_makes_no_sense_is_refused(void **state)
     cw_mesh_free(&box);
 }
 
+/* Returns how far a body reaches along a direction. */
+static double find_support(const cwi_rest_body *body, const double direction[3])
+{
+    double max = -INFINITY;
+    for (size_t n = 0; n < body->count; n++)
+        max = fmax(max, cwi_dot(body->points[n], direction));
+    return max;
+}
+
+/* A ball, an ellipsoid, or a shell with points all through it. */
+static void fill_body(cwi_rest_body *body, size_t count, int shape)
+{
+    body->points = cwi_alloc_array(count, sizeof *body->points);
+    assert_non_null(body->points);
+    for (body->count = 0; body->count < count;) {
+        double *p = body->points[body->count], length_sq = 0;
+        for (int a = 0; a < 3; a++) {
+            p[a] = 2 * test_random() - 1;
+            length_sq += p[a] * p[a];
+        }
+        if (length_sq > 1 || (shape == 2 && length_sq < 0.9 && test_random() < 0.8))
+            continue;
+        for (int a = 0; a < 3; a++)
+            p[a] = (shape == 1 ? 20 * (a + 1) : 50) * p[a] + 1000;
+        body->count++;
+    }
+}
+
+/* Dropped points are deeper than asked for, whichever way is down. */
+static void points_near_the_hull_stay(void **state)
+{
+    (void)state;
+    enum { COUNT = 20000, DIRECTIONS = 500 };
+    const double depth = 0.2;
+    srand(test_seed(8));
+    for (int shape = 0; shape < 3; shape++) {
+        cwi_rest_body all = {0}, kept = {0};
+        cw_error err = {0};
+        fill_body(&all, COUNT, shape);
+        kept.points = cwi_alloc_array(COUNT, sizeof *kept.points);
+        assert_non_null(kept.points);
+        memcpy(kept.points, all.points, COUNT * sizeof *kept.points);
+        kept.count = COUNT;
+        assert_ok(cwi_rest_body_drop_inner(&kept, depth, &err), err);
+        assert_true(kept.count < 0.9 * COUNT);
+        for (int n = 0; n < DIRECTIONS; n++) {
+            double d[3] = {test_random() - 0.5, test_random() - 0.5, test_random() - 0.5};
+            if (n < 3)
+                memcpy(d, (const double[3]){n == 0, n == 1, n == 2}, sizeof d);
+            if (!cwi_normalise(d))
+                continue;
+            const double support = find_support(&all, d);
+            assert_true(find_support(&kept, d) == support);
+            size_t near[2] = {0, 0};
+            for (size_t k = 0; k < COUNT; k++) {
+                near[0] += support - cwi_dot(all.points[k], d) <= depth;
+                near[1] += k < kept.count && support - cwi_dot(kept.points[k], d) <= depth;
+            }
+            assert_int_equal(near[0], near[1]);
+        }
+        cwi_rest_body_free(&all);
+        cwi_rest_body_free(&kept);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -239,6 +306,7 @@ int main(void)
         cmocka_unit_test(a_ball_stays),
         cmocka_unit_test(the_plate_holds_the_print),
         cmocka_unit_test(threads_change_nothing),
+        cmocka_unit_test(points_near_the_hull_stay),
         cmocka_unit_test(what_makes_no_sense_is_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

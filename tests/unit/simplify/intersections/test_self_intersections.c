@@ -118,16 +118,29 @@ static void make_fans(cw_mesh *mesh, uint32_t fans, uint32_t others, uint32_t si
         *t++ = n % 7 ? loose + n : n % loose;
 }
 
-static size_t count_all_pairs(const cw_mesh *mesh)
+/* Finds all pairs by looking at each, without boxes or doubts. Returns their number. */
+static size_t list_all_pairs(const cw_mesh *mesh, uint32_t *pairs, size_t capacity)
 {
     size_t count = 0;
-    for (size_t a = 0; a < mesh->triangle_count; a++)
-        for (size_t b = a + 1; b < mesh->triangle_count; b++) {
-            const uint32_t *x = mesh->triangles + 3 * a, *y = mesh->triangles + 3 * b;
-            count += cwi_has_area(mesh->positions, x) && cwi_has_area(mesh->positions, y) &&
-                     cwi_triangles_meet(mesh->positions, x, y);
+    for (uint32_t a = 0; a < mesh->triangle_count; a++)
+        for (uint32_t b = a + 1; b < mesh->triangle_count; b++) {
+            const uint32_t *x = mesh->triangles + 3 * (size_t)a,
+                           *y = mesh->triangles + 3 * (size_t)b;
+            if (!cwi_has_area(mesh->positions, x) || !cwi_has_area(mesh->positions, y) ||
+                !cwi_triangles_meet(mesh->positions, x, y))
+                continue;
+            if (count < capacity) {
+                pairs[2 * count] = a;
+                pairs[2 * count + 1] = b;
+            }
+            count++;
         }
     return count;
+}
+
+static size_t count_all_pairs(const cw_mesh *mesh)
+{
+    return list_all_pairs(mesh, NULL, 0);
 }
 
 static void wide_fans_are_searched_in_full(void **state)
@@ -144,6 +157,91 @@ static void wide_fans_are_searched_in_full(void **state)
         cw_crossings_free(&x);
         cw_mesh_free(&mesh);
     }
+}
+
+/* Returns how many pairs there are, and makes sure that they are those found one by one. */
+static size_t compare_with_all_pairs(const cw_mesh *mesh, const char *what, uint32_t round)
+{
+    cw_crossings x = find(mesh, 1 + (int)round % 3);
+    const size_t count = x.count;
+    uint32_t *pairs = calloc(count + 1, 2 * sizeof *pairs);
+    assert_non_null(pairs);
+    assert_false(x.undecided);
+    const size_t all = list_all_pairs(mesh, pairs, count);
+    if (all != count || memcmp(pairs, x.pairs, 2 * count * sizeof *pairs) != 0)
+        fail_msg("%s, round %u: %zu pairs, %zu one by one", what, round, count, all);
+    free(pairs);
+    cw_crossings_free(&x);
+    return count;
+}
+
+/* Triangles over few vertices, so that many share one, two or three of them. */
+static void share_vertices(cw_mesh *mesh, uint32_t vertices, size_t count, uint32_t size,
+                           uint32_t seed)
+{
+    alloc_mesh(mesh, vertices, count);
+    for (size_t i = 0; i < 3 * (size_t)vertices; i++)
+        mesh->positions[i] = (float)(next(&seed) % size);
+    for (size_t t = 0; t < count; t++) {
+        uint32_t *v = mesh->triangles + 3 * t;
+        v[0] = next(&seed) % vertices;
+        v[1] = (v[0] + 1 + next(&seed) % 5) % vertices;
+        v[2] = (v[1] + 1 + next(&seed) % 5) % vertices;
+    }
+}
+
+/* Moves coordinates by none to three units in their last place, which makes and breaks ties. */
+static void nudge(cw_mesh *mesh, uint32_t seed)
+{
+    for (size_t i = 0; i < 3 * mesh->vertex_count; i++)
+        for (uint32_t n = next(&seed) % 4; n > 0; n--)
+            mesh->positions[i] =
+                nextafterf(mesh->positions[i], next(&seed) % 2 ? INFINITY : -INFINITY);
+}
+
+/* Puts the mesh at other places and scales: the pairs there are found one by one again, as its
+ * coordinates are rounded. */
+static size_t compare_in_frames(cw_mesh *mesh, const char *what, uint32_t round)
+{
+    static const float frames[][2] = {/* scale, offset */
+                                      {1, 0},       {1e-4f, 0},  {1e4f, 0},   {0.37f, 5e6f},
+                                      {1e-3f, -90}, {1e-14f, 0}, {1e-30f, 0}, {1e30f, 1e33f}};
+    const size_t size = 3 * mesh->vertex_count;
+    float *kept = malloc(size * sizeof *kept);
+    size_t found = 0;
+    assert_non_null(kept);
+    memcpy(kept, mesh->positions, size * sizeof *kept);
+    for (size_t f = 0; f < sizeof frames / sizeof *frames; f++) {
+        for (size_t i = 0; i < size; i++)
+            mesh->positions[i] = frames[f][0] * kept[i] + frames[f][1];
+        found += compare_with_all_pairs(mesh, what, round);
+        nudge(mesh, round);
+        found += compare_with_all_pairs(mesh, what, round);
+    }
+    free(kept);
+    cw_mesh_free(mesh);
+    return found;
+}
+
+static void all_pairs_are_found_and_no_others(void **state)
+{
+    (void)state;
+    size_t found = 0;
+    const uint32_t rounds = test_is_short() ? 4 : 20;
+    for (uint32_t round = 0; round < rounds; round++) {
+        cw_mesh mesh;
+        scatter(&mesh, 150, 2 + 3 * (round % 7), 1, round);
+        found += compare_in_frames(&mesh, "scattered", round);
+        share_vertices(&mesh, 60 + 20 * round, 200, 2 + 2 * (round % 6), round);
+        found += compare_in_frames(&mesh, "shared vertices", round);
+        crumple(&mesh, 11, 1 + round % 4, round);
+        found += compare_in_frames(&mesh, "crumpled", round);
+        crumple(&mesh, 11, 1 + round % 4, round);
+        for (size_t v = 0; v < mesh.vertex_count; v++) /* in a plane that no axis lies in */
+            mesh.positions[3 * v + 2] = mesh.positions[3 * v] + 2 * mesh.positions[3 * v + 1];
+        found += compare_in_frames(&mesh, "flat", round);
+    }
+    assert_true(found > 10000);
 }
 
 /* Two cones of one rim: boxes of their needles overlap nearly all, and none of them meet. */
@@ -265,6 +363,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(cgal_counts_the_same_pairs),
+        cmocka_unit_test(all_pairs_are_found_and_no_others),
         cmocka_unit_test(wide_fans_are_searched_in_full),
         cmocka_unit_test(a_cone_of_needles_has_none),
         cmocka_unit_test(an_extracted_surface_has_none),
