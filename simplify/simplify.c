@@ -185,6 +185,7 @@ static cw_status run_passes(cwi_passes *p, const cw_mesh *mesh, const size_t *ta
         st = weigh_attributes(mesh, p->desc, &whole, err);
     if (st == CW_OK && p->desc->error_mm > 0)
         st = cwi_passes_remember(p, mesh, err);
+    p->keeps_record = true;
     if (st == CW_OK && p->next)
         st = cwi_passes_list(p, &whole, err);
     if (st == CW_OK && whole.triangles > CWI_BLOCK)

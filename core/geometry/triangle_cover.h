@@ -175,14 +175,12 @@ static inline bool cwi_piece_cut_off(cwi_triangle_piece *piece, const float *con
     return false;
 }
 
-/* Returns true if all of a piece certainly is near. Cuts it up. */
-static inline bool cwi_piece_covered(const cwi_cover *c, cwi_triangle_piece *piece)
+static inline bool cwi_piece_covered(const cwi_cover *c, cwi_triangle_piece *piece);
+
+/* Returns true if all of a piece certainly is near, some of it to a facet. Cuts it up. */
+static inline bool cwi_piece_covered_by(const cwi_cover *c, cwi_triangle_piece *piece,
+                                        const float *const facet[3])
 {
-    const float *facet[3];
-    double middle[3];
-    cwi_piece_middle(piece, middle);
-    if (!(c->nearest(c->context, middle, facet) <= c->distance_sq))
-        return false;
     for (unsigned far; (far = cwi_piece_far(piece, facet, c->distance_sq)) != 0;) {
         cwi_triangle_piece other;
         const bool cut = cwi_piece_cut_off(piece, facet, far, c->normal, &other);
@@ -195,15 +193,35 @@ static inline bool cwi_piece_covered(const cwi_cover *c, cwi_triangle_piece *pie
     return true;
 }
 
-/* Returns true if all of a triangle certainly is near. Sets the normal. */
-static inline bool cwi_is_covered(cwi_cover *c, const double corners[3][3])
+/* Returns true if all of a piece certainly is near. Cuts it up. */
+static inline bool cwi_piece_covered(const cwi_cover *c, cwi_triangle_piece *piece)
+{
+    const float *facet[3];
+    double middle[3];
+    cwi_piece_middle(piece, middle);
+    return c->nearest(c->context, middle, facet) <= c->distance_sq &&
+           cwi_piece_covered_by(c, piece, facet);
+}
+
+/* Returns true if all of a triangle certainly is near. Sets the normal.
+ * first  facet that some of it may be near; NULL where none is known */
+static inline bool cwi_is_covered_from(cwi_cover *c, const double corners[3][3],
+                                       const float *const first[3])
 {
     cwi_triangle_piece whole;
-    cwi_triangle_normal(corners[0], corners[1], corners[2], c->normal);
     whole.count = 3;
     whole.cuts = CWI_PIECE_CUTS;
     memcpy(whole.p, corners, 3 * sizeof *whole.p);
-    return cwi_piece_covered(c, &whole);
+    const unsigned far = first ? cwi_piece_far(&whole, first, c->distance_sq) : 7;
+    if (far == 0)
+        return true;
+    cwi_triangle_normal(corners[0], corners[1], corners[2], c->normal);
+    return far == 7 ? cwi_piece_covered(c, &whole) : cwi_piece_covered_by(c, &whole, first);
+}
+
+static inline bool cwi_is_covered(cwi_cover *c, const double corners[3][3])
+{
+    return cwi_is_covered_from(c, corners, NULL);
 }
 
 #endif

@@ -10,7 +10,9 @@
 #include "core/mesh/mesh.h"
 #include "core/mesh/mesh_triangle.h"
 #include "simplify/blocks/distance_proof.h"
+#include "simplify/blocks/find_folds.h"
 #include "simplify/blocks/partition.h"
+#include "simplify/blocks/proof_record.h"
 
 #include <math.h>
 #include <string.h>
@@ -67,11 +69,13 @@ static void free_input_lists(cwi_passes *p)
     cwi_free(p->across);
     cwi_free(p->next);
     cwi_free(p->tighten_level);
+    cwi_free(p->folded);
     cwi_free(p->allowed);
     cwi_free(p->normals);
     cwi_free(p->saved_next);
+    cwi_proof_record_free(&p->record);
     p->first = p->around = p->across = p->next = p->saved_next = NULL;
-    p->tighten_level = NULL;
+    p->tighten_level = p->folded = NULL;
     p->allowed = NULL;
     p->normals = NULL;
     p->original = (cwi_original){0};
@@ -170,20 +174,23 @@ cw_status cwi_passes_remember(cwi_passes *p, const cw_mesh *input, cw_error *err
     p->across = cwi_alloc_array(6 * input->triangle_count, sizeof *p->across);
     p->next = cwi_alloc_array(vertices, sizeof *p->next);
     p->tighten_level = cwi_alloc_zeroed(vertices, sizeof *p->tighten_level);
+    p->folded = cwi_alloc_zeroed(vertices, sizeof *p->folded);
     p->saved_next = cwi_alloc_array(vertices, sizeof *p->saved_next);
-    if (!p->first || !p->around || !p->across || !p->next || !p->tighten_level ||
+    if (!p->first || !p->around || !p->across || !p->next || !p->tighten_level || !p->folded ||
         !p->saved_next)
         return cwi_fail_memory(err);
     cwi_fans_sort(input->triangles, input->triangle_count, vertices, p->first, p->around);
     find_opposite_corners(p);
     for (size_t v = 0; v < vertices; v++)
         p->next[v] = (uint32_t)v; /* in no list */
+    cwi_passes_find_folds(p);
     p->original =
         (cwi_original){.vertices = vertices,
                        .fans = {input->positions, input->triangles, p->first, p->around},
                        .across = p->across,
                        .next = p->next,
-                       .tighten_level = p->tighten_level};
+                       .tighten_level = p->tighten_level,
+                       .folded = p->folded};
     cw_status st = allow_distances(p, err);
     if (st == CW_OK)
         st = find_normals(p, err);
@@ -309,14 +316,15 @@ static bool raise_tighten_levels(const cwi_passes *p, const cwi_block_part *x)
 
 /* Checks whether the result keeps the distance; where it does not, raises tighten levels for the
  * next time. */
-static cw_status check_part_distance(const cwi_passes *p, const cwi_block_part *x, bool *kept,
+static cw_status check_part_distance(const cwi_passes *p, const cwi_block_part *x,
+                                     cwi_near_facets *near_facets, bool *kept,
                                      bool *can_tighten, cw_error *err)
 {
     uint8_t *input_beyond = cwi_alloc_array(x->input.triangle_count, 1);
     uint8_t *beyond = cwi_alloc_array(x->left->interior_count, 1);
     uint8_t *near = cwi_alloc_zeroed(x->left->vertices, 1);
     cw_status st = input_beyond && beyond && near
-                       ? cwi_block_part_prove(p, x, input_beyond, beyond, err)
+                       ? cwi_block_part_prove(p, x, input_beyond, beyond, near_facets, err)
                        : cwi_fail_memory(err);
     if (st == CW_OK) {
         const size_t broken = mark_input(p, x, input_beyond) + mark_result(p, x, beyond, near);
@@ -341,17 +349,20 @@ typedef cw_status collapse_function(const cwi_passes *p, const cwi_block_part *x
 /* Collapses look at what is near them only. Where that was not enough the part is done again
  * with higher tighten levels; when that does not help, it stays as it was. */
 static cw_status enforce_part_distance(const cwi_passes *p, const cwi_block_part *x,
-                                       collapse_function *collapse, size_t *repeats,
+                                       collapse_function *collapse,
+                                       cwi_near_facets *near_facets, size_t *repeats,
                                        cw_error *err)
 {
     cw_status st = CW_OK;
     for (bool kept = x->left->interior_count == 0, can_tighten = true; st == CW_OK && !kept;) {
-        st = check_part_distance(p, x, &kept, &can_tighten, err);
+        st = check_part_distance(p, x, near_facets, &kept, &can_tighten, err);
         if (st != CW_OK || kept)
             break;
         restore_point_lists(p, x->left);
         cwi_block_free(x->left);
         st = can_tighten ? collapse(p, x, err) : collapse_within_cost(p, x, -1, err);
+        if (near_facets)
+            cwi_near_facets_clear(near_facets, x->input.triangle_count);
         kept = !can_tighten;
         ++*repeats;
     }
@@ -362,7 +373,8 @@ static cw_status enforce_part_distance(const cwi_passes *p, const cwi_block_part
 
 typedef struct block_batch {
     const cwi_passes *passes;
-    bool proves; /* whether each block is held against its part of the input */
+    cwi_proof_record *record; /* NULL: none is kept */
+    bool proves;              /* whether each block is held against its part of the input */
     cwi_mesh_block *blocks, *left;
     cwi_decimater **decimaters;
     cw_status *statuses;
@@ -410,8 +422,16 @@ static void enforce_block_distance(void *context, size_t n)
                               .cost = c->cost,
                               .threads = 1};
     cw_status st = c->target ? CW_OK : collapse_part(p, &x, err);
+    cwi_near_facets *near = NULL;
+    if (st == CW_OK && c->record) {
+        near = cwi_alloc_zeroed(x.input.triangle_count, sizeof *near);
+        st = near ? CW_OK : cwi_fail_memory(err);
+    }
     if (st == CW_OK && c->proves)
-        st = enforce_part_distance(p, &x, collapse_part, c->repeats + n, err);
+        st = enforce_part_distance(p, &x, collapse_part, near, c->repeats + n, err);
+    if (st == CW_OK && c->record)
+        cwi_proof_record_take(c->record, p, &x, near, n);
+    cwi_free(near);
     c->statuses[n] = st;
     cwi_block_free(c->blocks + n);
 }
@@ -538,16 +558,18 @@ static void keep_known_borders(const uint8_t *seam, cwi_mesh_block *left)
 
 /* Cuts, runs and joins. If *out is *whole, that is freed once it is cut. */
 static cw_status simplify_in_blocks(const cwi_passes *p, cwi_mesh_block *whole, size_t target,
-                                    double cut_fraction, bool proves, cwi_mesh_block *out,
-                                    size_t *repeats, cw_error *err)
+                                    double cut_fraction, bool proves, cwi_proof_record *record,
+                                    cwi_mesh_block *out, size_t *repeats, cw_error *err)
 {
     const size_t id_count = whole->vertices;
-    block_batch c = {.passes = p, .proves = proves};
+    block_batch c = {.passes = p, .record = record, .proves = proves};
     size_t max_repeats = 0;
     cw_status st = cwi_blocks_cut(whole, CWI_BLOCK, cut_fraction, &c.blocks, &c.count, err);
     if (st != CW_OK)
         return st;
     st = find_first_target(&c, target, err);
+    if (st == CW_OK && record)
+        st = cwi_proof_record_init(record, p, c.count, err);
     uint8_t *seam = whole->seam;
     if (out == whole) {
         whole->seam = NULL;
@@ -557,6 +579,8 @@ static cw_status simplify_in_blocks(const cwi_passes *p, cwi_mesh_block *whole, 
         st = simplify_batch(&c, err);
     for (size_t n = 0; n < c.count && st == CW_OK; n++)
         max_repeats = c.repeats[n] > max_repeats ? c.repeats[n] : max_repeats;
+    for (size_t n = 0; n < c.count && st == CW_OK && record; n++)
+        record->first_facet[n + 1] = record->first_facet[n] + c.left[n].triangles;
     *repeats += max_repeats;
     if (st == CW_OK)
         st = cwi_blocks_join(c.left, c.count, id_count, out, err);
@@ -578,7 +602,9 @@ static const double SECOND_CUT_FRACTION = 7.0 / 16;
 cw_status cwi_passes_blocks(cwi_passes *p, cwi_mesh_block *whole, size_t target, cw_error *err)
 {
     save_point_lists(p);
-    return simplify_in_blocks(p, whole, target, 0.5, true, whole, &p->repeats, err);
+    return simplify_in_blocks(p, whole, target, 0.5, true,
+                              p->next && p->keeps_record ? &p->record : NULL, whole,
+                              &p->repeats, err);
 }
 
 cw_status cwi_passes_seams(cwi_passes *p, cwi_mesh_block *whole, size_t target, cw_error *err)
@@ -586,8 +612,8 @@ cw_status cwi_passes_seams(cwi_passes *p, cwi_mesh_block *whole, size_t target, 
     if (p->next || whole->triangles <= CWI_BLOCK || whole->triangles <= target + target / 4)
         return CW_OK;
     cwi_block_number(whole);
-    return simplify_in_blocks(p, whole, target, SECOND_CUT_FRACTION, false, whole, &p->repeats,
-                              err);
+    return simplify_in_blocks(p, whole, target, SECOND_CUT_FRACTION, false, NULL, whole,
+                              &p->repeats, err);
 }
 
 /* --- the last pass ------------------------------------------------------------------------ */
@@ -630,7 +656,7 @@ static cw_status collapse_seams(const cwi_passes *p, const cwi_block_part *x, cw
     cwi_mesh_block from = *x->from, joined = {0};
     size_t none = 0;
     cw_status st =
-        simplify_in_blocks(p, &from, 0, SECOND_CUT_FRACTION, false, &joined, &none, err);
+        simplify_in_blocks(p, &from, 0, SECOND_CUT_FRACTION, false, NULL, &joined, &none, err);
     if (st == CW_OK)
         st = restore_limits(x->from, &joined, err);
     const cwi_block_part rest = {.from = &joined, .left = x->left, .cost = x->cost};
@@ -652,7 +678,7 @@ static cw_status collapse_to_error(cwi_passes *p, const cwi_mesh_block *whole, s
                               .threads = p->desc->threads};
     collapse_function *const run = has_seams(whole) ? collapse_seams : collapse_part;
     const cw_status st = run(p, &x, err);
-    return st == CW_OK ? enforce_part_distance(p, &x, run, &p->repeats, err) : st;
+    return st == CW_OK ? enforce_part_distance(p, &x, run, NULL, &p->repeats, err) : st;
 }
 
 cw_status cwi_passes_whole(cwi_passes *p, const cwi_mesh_block *whole, const size_t *targets,

@@ -11,6 +11,20 @@
 /* Triangles of a block: as few as pay for its seams, as many as a cache holds. */
 enum { CWI_BLOCK = 1 << 15 };
 
+/* Facets of a result that a triangle of the input was found near: all of it is near them. A count
+ * of 0, or above CWI_NEAR_FACETS: they are not known. */
+enum { CWI_NEAR_FACETS = 3 };
+typedef struct cwi_near_facets {
+    uint32_t count, facets[CWI_NEAR_FACETS];
+} cwi_near_facets;
+
+/* These for the whole input, by block. NULL: nothing is recorded. */
+typedef struct cwi_proof_record {
+    cwi_near_facets *near; /* triangles of the input */
+    uint32_t *block_of;    /* triangles of the input: whose facets these are */
+    size_t *first_facet;   /* blocks: where their facets begin among those joined */
+} cwi_proof_record;
+
 /* State that passes over one surface share. */
 typedef struct cwi_passes {
     const cwi_openmesh_functions *openmesh;
@@ -23,11 +37,13 @@ typedef struct cwi_passes {
     cw_mesh input;         /* a view of what the distance is kept from */
     cwi_original original; /* the same; next is NULL without an error to keep */
     uint32_t *first, *around, *across, *next;
-    uint8_t *tighten_level;
+    uint8_t *tighten_level, *folded;
     float *allowed;       /* NULL without views */
     float *normals;       /* of what a view sees; NULL where they do not matter */
     uint32_t *saved_next; /* next as it was before the pass */
     size_t repeats;       /* with higher tighten levels */
+    bool keeps_record;    /* the blocks' surface is also that of the last pass */
+    cwi_proof_record record;
 } cwi_passes;
 
 /* Free with cwi_passes_free(), also after an error. They must not move.

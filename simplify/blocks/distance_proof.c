@@ -12,6 +12,7 @@
 #include "core/mesh/mesh_triangle.h"
 #include "core/mesh/surface_walk.h"
 #include "simplify/blocks/partition.h"
+#include "simplify/blocks/proof_record.h"
 #include "simplify/quality/mesh_within.h"
 
 #include <math.h>
@@ -27,42 +28,52 @@ typedef struct walks {
     const cwi_fans *surface;
     const uint32_t *begin; /* triangles: one of the surface, or NOT_KNOWN */
     double limit;
-    const double *limits; /* triangles; or NULL */
+    const double *limits;  /* triangles; or NULL */
+    const uint8_t *known;  /* triangles: 1 where no proof is needed; or NULL */
+    cwi_near_facets *near; /* triangles: what they are near; or NULL */
     uint8_t *beyond;
 } walks;
 
+/* A walk, and the facets that it led to. */
+typedef struct recorded_walk {
+    cwi_surface_walk walk;
+    cwi_near_facets near;
+} recorded_walk;
+
 static double find_facet(void *context, const double p[3], const float *facet[3])
 {
-    cwi_surface_walk *walk = context;
-    const double distance_sq = cwi_walk_to(walk, p);
-    cwi_walk_facet(walk, walk->at, facet);
+    recorded_walk *r = context;
+    const double distance_sq = cwi_walk_to(&r->walk, p);
+    cwi_walk_facet(&r->walk, r->walk.at, facet);
+    cwi_near_facets_add(&r->near, r->walk.at);
     return distance_sq;
-}
-
-static bool is_near_facet(const cwi_surface_walk *walk, const double corners[3][3])
-{
-    for (int k = 0; k < 3; k++)
-        if (!(cwi_walk_square(walk, walk->at, corners[k]) <= walk->enough))
-            return false;
-    return true;
 }
 
 static bool is_within(const walks *w, size_t t)
 {
     const double limit = w->limits ? w->limits[t] : w->limit;
-    cwi_surface_walk walk = {.fans = w->surface, .enough = limit * limit, .at = w->begin[t]};
-    cwi_cover cover = {.nearest = find_facet, .context = &walk, .distance_sq = walk.enough};
+    recorded_walk r = {
+        .walk = {.fans = w->surface, .enough = limit * limit, .at = w->begin[t]}};
+    cwi_cover cover = {.nearest = find_facet, .context = &r, .distance_sq = limit * limit};
+    const float *first[3];
     double corners[3][3];
+    if (r.walk.at == NOT_KNOWN)
+        return false;
+    cwi_walk_facet(&r.walk, r.walk.at, first);
+    cwi_near_facets_add(&r.near, r.walk.at);
     cwi_mesh_corners(w->mesh, t, corners);
-    return walk.at != NOT_KNOWN && (is_near_facet(&walk, (const double(*)[3])corners) ||
-                                    cwi_is_covered(&cover, (const double(*)[3])corners));
+    if (!cwi_is_covered_from(&cover, (const double(*)[3])corners, first))
+        return false;
+    if (w->near)
+        w->near[t] = r.near;
+    return true;
 }
 
 static void walk_chunk(void *context, size_t chunk)
 {
     const walks *w = context;
     for (size_t t = CHUNK * chunk; t < CHUNK * (chunk + 1) && t < w->mesh->triangle_count; t++)
-        w->beyond[t] = !is_within(w, t);
+        w->beyond[t] = !(w->known && w->known[t]) && !is_within(w, t);
 }
 
 /* --- what walks leave ---------------------------------------------------------------------- */
@@ -194,11 +205,12 @@ static cw_status find_limits(const cwi_passes *p, const cw_mesh *m, double **lim
  * be near, and some of it is in fans. */
 static cw_status find_beyond(const cwi_passes *p, const cw_mesh *mesh, const cwi_fans *fans,
                              const uint32_t *begin, const cw_mesh *reference, int threads,
-                             uint8_t *beyond, cw_error *err)
+                             const uint8_t *known, cwi_near_facets *near, uint8_t *beyond,
+                             cw_error *err)
 {
     double *limits = NULL;
     cw_status st = find_limits(p, mesh, &limits, err);
-    const walks w = {mesh, fans, begin, p->error, limits, beyond};
+    const walks w = {mesh, fans, begin, p->error, limits, known, near, beyond};
     if (st == CW_OK)
         st =
             cwi_parallel_for((mesh->triangle_count + CHUNK - 1) / CHUNK, CHUNK * CHUNK, threads,
@@ -288,8 +300,8 @@ static cw_status begin_as_neighbours(const cw_mesh *mesh, uint32_t *begin, cw_er
     return ok ? CW_OK : cwi_fail_memory(err);
 }
 
-static cw_status prove_input(const cwi_passes *p, const cwi_block_part *x, uint8_t *beyond,
-                             cw_error *err)
+static cw_status prove_input(const cwi_passes *p, const cwi_block_part *x, const uint8_t *known,
+                             cwi_near_facets *near, uint8_t *beyond, cw_error *err)
 {
     const cwi_mesh_block *left = x->left;
     cw_mesh all = {0};
@@ -305,7 +317,8 @@ static cw_status prove_input(const cwi_passes *p, const cwi_block_part *x, uint8
         st = begin_as_neighbours(&x->input, begin, err);
     if (st == CW_OK) {
         cwi_fans_sort(left->corners, left->interior_count, left->vertices, first, around);
-        st = find_beyond(p, &x->input, &fans, begin, &all, x->threads, beyond, err);
+        st =
+            find_beyond(p, &x->input, &fans, begin, &all, x->threads, known, near, beyond, err);
     }
     cw_mesh_free(&all);
     cwi_free(begin);
@@ -314,8 +327,8 @@ static cw_status prove_input(const cwi_passes *p, const cwi_block_part *x, uint8
     return st;
 }
 
-static cw_status prove_result(const cwi_passes *p, const cwi_block_part *x, uint8_t *beyond,
-                              cw_error *err)
+static cw_status prove_result(const cwi_passes *p, const cwi_block_part *x,
+                              const uint8_t *known, uint8_t *beyond, cw_error *err)
 {
     const cw_mesh result = cwi_block_view(x->left);
     uint32_t *begin = cwi_alloc_array(result.triangle_count, sizeof *begin);
@@ -324,15 +337,30 @@ static cw_status prove_result(const cwi_passes *p, const cwi_block_part *x, uint
     begin_at_input(p, x->left, begin);
     cw_status st = begin_as_neighbours(&result, begin, err);
     if (st == CW_OK)
-        st = find_beyond(p, &result, &p->original.fans, begin, &x->input, x->threads, beyond,
-                         err);
+        st = find_beyond(p, &result, &p->original.fans, begin, &x->input, x->threads, known,
+                         NULL, beyond, err);
     cwi_free(begin);
     return st;
 }
 
 cw_status cwi_block_part_prove(const cwi_passes *p, const cwi_block_part *x,
-                               uint8_t *input_beyond, uint8_t *left_beyond, cw_error *err)
+                               uint8_t *input_beyond, uint8_t *left_beyond,
+                               cwi_near_facets *near, cw_error *err)
 {
-    const cw_status st = prove_input(p, x, input_beyond, err);
-    return st == CW_OK ? prove_result(p, x, left_beyond, err) : st;
+    const bool has_record = p->record.near && !x->global_ids;
+    uint8_t *input_known = has_record ? cwi_alloc_zeroed(x->input.triangle_count, 1) : NULL;
+    uint8_t *left_known = has_record ? cwi_alloc_zeroed(x->left->interior_count, 1) : NULL;
+    cw_status st = !has_record || (input_known && left_known) ? CW_OK : cwi_fail_memory(err);
+    if (st == CW_OK && has_record)
+        st = cwi_proof_record_compare(&p->record, x, p->input.vertex_count, input_known,
+                                      left_known, err);
+    if (near)
+        cwi_near_facets_clear(near, x->input.triangle_count);
+    if (st == CW_OK)
+        st = prove_input(p, x, input_known, near, input_beyond, err);
+    if (st == CW_OK)
+        st = prove_result(p, x, left_known, left_beyond, err);
+    cwi_free(input_known);
+    cwi_free(left_known);
+    return st;
 }

@@ -17,9 +17,12 @@ typedef struct cwi_block_part {
 
 /* Finds the triangles of both that are farther from the other than allowed, or may be.
  * input_beyond  one for each of the part's input, set to 0 or 1
- * left_beyond   one for each of the part's own triangles that are left */
+ * left_beyond   one for each of the part's own triangles that are left
+ * near          one for each of the part's input: what it is near; or NULL. What blocks have
+ *               recorded of the whole surface is not proved again */
 CW_NODISCARD cw_status cwi_block_part_prove(const cwi_passes *passes,
                                             const cwi_block_part *part, uint8_t *input_beyond,
-                                            uint8_t *left_beyond, cw_error *err);
+                                            uint8_t *left_beyond, cwi_near_facets *near,
+                                            cw_error *err);
 
 #endif

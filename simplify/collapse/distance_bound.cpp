@@ -17,6 +17,9 @@ namespace
 // triangle is near the end of the last walk: walks around a fan would be long.
 const size_t NEARBY_RING = 192;
 
+// Triangles of the original to cross for an edge, besides those that there are points for.
+const size_t MIN_STEPS = 64;
+
 // The share of a segment at which it is nearest to what lies `from` its start.
 float share_near(const Vec &from, const Vec &along)
 {
@@ -81,19 +84,25 @@ uint32_t Numbers::of(uint32_t vertex, bool *fresh)
 }
 
 Bound::Bound(const cwi_mesh_block &block, const cwi_original *original_, double error_)
-    : original(original_), error(float(error_)), overlay(original_)
+    : original(original_), error(float(error_)), trace(original_)
 {
     if (!original || !block.nearest_points)
         return;
     requested = true;
     heads.assign(block.nearest_points, block.nearest_points + block.interior_count);
     marks.resize(block.interior_count);
+    has_limits = original->allowed != nullptr;
+    for (size_t f = 0; f < block.interior_count && !has_limits; f++)
+        for (uint32_t p = heads[f]; p != UINT32_MAX && !has_limits; p = original->next[p])
+            has_limits = original->tighten_level[p] > 0;
 }
 
 void Bound::collect(uint32_t face)
 {
-    for (uint32_t p = heads[face]; p != UINT32_MAX; p = original->next[p])
+    for (uint32_t p = heads[face]; p != UINT32_MAX; p = original->next[p]) {
+        __builtin_prefetch(original->fans.points + 3 * size_t(p));
         points.push_back(p);
+    }
 }
 
 void Bound::collect(const OneRing &ring)
@@ -109,6 +118,8 @@ void Bound::collect(const OneRing &ring)
 // nothing tells where the original is.
 float Bound::allowed() const
 {
+    if (!has_limits)
+        return points.empty() ? -1 : error;
     uint8_t tighten_level = points.empty() ? uint8_t(CWI_MAX_TIGHTEN_LEVEL) : 0;
     float min_distance = error;
     for (uint32_t p : points) {
@@ -173,15 +184,15 @@ bool Bound::are_listed(const OneRing &ring, float distance)
     return true;
 }
 
-// Returns true if the ring triangles whose bits are set are near the original.
-bool Bound::is_ring_near(const OneRing &ring, uint32_t triangles, float distance)
+// Returns true if the ring triangles, all or those in doubt, are near the original.
+bool Bound::is_ring_near(const OneRing &ring, bool only_doubts, float distance)
 {
     const double distance_sq = double(distance) * double(distance);
     Passage passage = {{&original->fans, distance_sq, nearest}, {}};
     cwi_cover cover = {find_passed, &passage, distance_sq, {}};
     for (size_t n = 0; n < ring.triangles.size(); n++) {
         const RingTriangle &s = ring.triangles[n];
-        if (n < 32 && !(triangles >> n & 1))
+        if (only_doubts && !trace.ring_in_doubt[n])
             continue;
         double corner[3][3];
         for (unsigned k = 0; k < 3; k++) {
@@ -267,13 +278,54 @@ bool Bound::is_original_near(const Surface &surface, const OneRing &ring)
     return true;
 }
 
+// Whether a place, seen from the moved vertex, is near the ring.
+bool Bound::is_ring_at(const Vec &place, float distance) const
+{
+    float distance_sq;
+    facets.nearest(place, &distance_sq);
+    return distance_sq <= distance * distance;
+}
+
+// Folds of the original may stand out beside all edges of the ring, with points near it only. So
+// middles of edges are looked at whose ends are both near.
+void Bound::doubt_folds(const Vec &position, float distance)
+{
+    for (uint32_t p : points)
+        for (uint32_t n = original->fans.first[p];
+             original->folded[p] && n < original->fans.first[p + 1]; n++)
+            for (const uint32_t q :
+                 {original->across[2 * size_t(n)], original->across[2 * size_t(n) + 1]}) {
+                const Vec end = point(q) - position,
+                          middle = 0.5f * (point(p) - position + end);
+                if (!is_ring_at(middle, distance) && is_ring_at(end, distance))
+                    trace.triangles_in_doubt.push_back(original->fans.around[n]);
+            }
+}
+
+// A trace may stray from the ring, as into the letters of a text: what it meets there need not be
+// near the ring. So of the triangles in doubt only those stay that a point of the ring is at.
+void Bound::forget_other_doubts()
+{
+    std::vector<uint32_t> &doubts = trace.triangles_in_doubt;
+    bool fresh;
+    numbers.clear(points.size() + 3 * doubts.size());
+    for (uint32_t p : points)
+        numbers.of(p, &fresh);
+    const auto is_other = [&](uint32_t triangle) {
+        const uint32_t *c = corners(triangle), count = uint32_t(points.size());
+        return numbers.of(c[0], &fresh) >= count && numbers.of(c[1], &fresh) >= count &&
+               numbers.of(c[2], &fresh) >= count;
+    };
+    doubts.erase(std::remove_if(doubts.begin(), doubts.end(), is_other), doubts.end());
+}
+
 // Whether the original's triangles in doubt are, and those under ring triangles in doubt.
 bool Bound::are_doubts_near(const Surface &surface, const OneRing &ring)
 {
     add_around(surface, ring);
-    numbers.clear(3 * (overlay.triangles_in_doubt.size() + under.size()));
+    numbers.clear(3 * (trace.triangles_in_doubt.size() + under.size()));
     seen.clear();
-    for (const std::vector<uint32_t> *triangles : {&overlay.triangles_in_doubt, &under})
+    for (const std::vector<uint32_t> *triangles : {&trace.triangles_in_doubt, &under})
         for (uint32_t t : *triangles)
             if (!is_triangle_near(t, 0, ring.position))
                 return false;
@@ -283,13 +335,14 @@ bool Bound::are_doubts_near(const Surface &surface, const OneRing &ring)
 // The exact bounds decide where crossing edges do not.
 bool Bound::is_covered(const Surface &surface, const OneRing &ring, float distance)
 {
-    const bool laid = overlay.lay(ring);
-    if (laid && overlay.compare(points, distance))
+    trace.compare(ring, nearest, distance, MIN_STEPS + 4 * points.size());
+    if (trace.is_lost)
+        return is_ring_near(ring, false, distance) && is_original_near(surface, ring);
+    doubt_folds(ring.position, distance);
+    if (trace.triangles_in_doubt.empty())
         return true;
-    if (!laid || overlay.meets_wide_fan)
-        return is_ring_near(ring, UINT32_MAX, distance) && is_original_near(surface, ring);
-    return is_ring_near(ring, overlay.ring_triangles_in_doubt, distance) &&
-           are_doubts_near(surface, ring);
+    forget_other_doubts();
+    return is_ring_near(ring, true, distance) && are_doubts_near(surface, ring);
 }
 
 // Runs the checks that refuse most for the least work first.

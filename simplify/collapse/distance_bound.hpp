@@ -2,7 +2,7 @@
 #ifndef SIMPLIFY_COLLAPSE_DISTANCE_BOUND_HPP
 #define SIMPLIFY_COLLAPSE_DISTANCE_BOUND_HPP
 
-#include "simplify/collapse/ring_overlay.hpp"
+#include "simplify/collapse/edge_trace.hpp"
 #include "simplify/collapse/triangle_packet.hpp"
 
 namespace cw
@@ -64,20 +64,24 @@ private:
     bool is_straight() const;
     bool is_near(const Vec &position, float distance_sq);
     bool are_listed(const OneRing &ring, float distance);
-    bool is_ring_near(const OneRing &ring, uint32_t triangles, float distance);
+    bool is_ring_near(const OneRing &ring, bool only_doubts, float distance);
     void add_around(const Surface &surface, const OneRing &ring);
     void see_points(const Vec &position);
     bool is_triangle_near(uint32_t triangle, uint32_t first, const Vec &position);
     bool is_original_near(const Surface &surface, const OneRing &ring);
+    bool is_ring_at(const Vec &place, float distance) const;
+    void doubt_folds(const Vec &position, float distance);
+    void forget_other_doubts();
     bool are_doubts_near(const Surface &surface, const OneRing &ring);
     bool is_covered(const Surface &surface, const OneRing &ring, float distance);
 
     const cwi_original *original;
     float error;
     bool requested = false;                    // also of a block without triangles
+    bool has_limits = false;                   // points with limits of their own are listed
     std::vector<uint32_t> heads;               // first point of a face's list
     std::vector<uint32_t> points, triangle_of; // of the ring; the nearest ring triangle
-    Overlay overlay;
+    EdgeTrace trace;
     std::vector<uint32_t> under;    // triangles of the original under the ring
     uint32_t nearest;               // triangle of the original to the moved vertex
     Facets facets;                  // the ring's, then those around, from its vertex

@@ -76,6 +76,7 @@ typedef struct cwi_original {
         *across;    /* 2 for each of fans.around: the triangle's other corners in order */
     uint32_t *next; /* vertices: the next point in a list; UINT32_MAX ends it */
     const uint8_t *tighten_level; /* vertices: how often the distance is halved around them */
+    const uint8_t *folded;        /* vertices: triangles around them face opposite ways */
     const float *allowed;    /* vertices: the distance there; NULL: the block's everywhere */
     const float *normals;    /* vertices x 3: 0 where the next does not matter; or NULL */
     float min_normal_cosine; /* cosine: how far they are from the mean of those joined */
