@@ -177,7 +177,7 @@ for stage in $stages; do
         ;;
     threads)
         configure_and_build tsan
-        run_tests threads tsan -R 'parallel|extract|label_crossings|volume|vbuffer|intensity|quality|render|distance_mesh|oracle|intersections|normals|simplify$|slabs|sparse|irregular'
+        run_tests threads tsan -R 'parallel|extract|label_crossings|volume|vbuffer|intensity|quality|render|distance_mesh|oracle|intersections|normals|simplify$|slabs|sparse|irregular|read_ahead|test_stream$'
         ;;
     minimal)
         configure_and_build minimal
