@@ -192,8 +192,8 @@ static int find_turn(const double p[2], const double q[2], const double r[2])
 }
 
 /* Returns true if the line through an edge of t, whose corners turn by `turn`, has all of the other
- * triangle on its far side. */
-static bool edge_parts(const double t[3][2], int turn, const double other[3][2])
+ * triangle on its far side. t, other: three corners */
+static bool edge_parts(const double (*t)[2], int turn, const double (*other)[2])
 {
     for (int k = 0; k < 3; k++) {
         const double *p = t[k], *q = t[(k + 1) % 3];
