@@ -47,8 +47,8 @@ void cwi_near_facets_add(cwi_near_facets *near, uint32_t facet)
         near->count++;
 }
 
-/* Returns the triangle of a surface that has three corners; NONE if there is none, or if all of
- * their fans are wide. */
+/* Returns the triangle of a surface that has three corners; NONE where the surface lacks it, or all
+ * of their fans are wide. */
 static uint32_t find_triangle(const cwi_fans *fans, const uint32_t corner[3])
 {
     uint32_t hub = corner[0];

@@ -47,14 +47,23 @@ static bool meet_triangle(const ray_search *s, ray *r, const double p[3][3], siz
     return is_first;
 }
 
+/* Loads the triangle in a slot of the tree. Returns false for the one that the rays start at. */
+static bool load_triangle(const ray_search *s, size_t slot, double p[3][3], size_t *triangle)
+{
+    *triangle = s->target->tree.order[slot];
+    if (*triangle == s->start->triangle)
+        return false;
+    cwi_mesh_corners(s->target->mesh, *triangle, p);
+    return true;
+}
+
 static bool visit_one(void *context, size_t slot)
 {
     ray_search *s = context;
-    const size_t triangle = s->target->tree.order[slot];
+    size_t triangle;
     double p[3][3];
-    if (triangle == s->start->triangle)
+    if (!load_triangle(s, slot, p, &triangle))
         return true;
-    cwi_mesh_corners(s->target->mesh, triangle, p);
     if (meet_triangle(s, &s->rays[0], (const double(*)[3])p, triangle))
         s->segment.reach = (float)cwi_lesser(1, BEYOND * s->rays[0].fraction);
     return true;
@@ -63,11 +72,10 @@ static bool visit_one(void *context, size_t slot)
 static bool visit_two(void *context, size_t slot)
 {
     ray_search *s = context;
-    const size_t triangle = s->target->tree.order[slot];
+    size_t triangle;
     double p[3][3];
-    if (triangle == s->start->triangle)
+    if (!load_triangle(s, slot, p, &triangle))
         return true;
-    cwi_mesh_corners(s->target->mesh, triangle, p);
     if (meet_triangle(s, &s->rays[0], (const double(*)[3])p, triangle))
         s->segment.reach = (float)cwi_lesser(1, BEYOND * s->rays[0].fraction);
     else if (meet_triangle(s, &s->rays[1], (const double(*)[3])p, triangle))

@@ -42,7 +42,7 @@ struct cwi_wall_field {
     const cw_mesh *mesh;
     const cw_print_desc *limits;
     cwi_wall_target target;
-    float *normals;             /* vertices x 3; 0 where there is none */
+    float *normals;             /* vertices x 3; 0 at vertices without area around */
     float *wall, *gap;          /* of each triangle; may be NULL */
     bool seeks_thinnest;        /* nothing but the thinnest wall of each part */
     cwi_wall_sum *walls, *gaps; /* of each part */
