@@ -11,6 +11,7 @@
 #include "cli/inputs/volume_input.h"
 #include "core/base/memory.h"
 #include "core/base/status.h"
+#include "core/volume/named_level.h"
 #include "core/volume/volume.h"
 
 #include <cubewright/extract.h>
@@ -59,13 +60,13 @@ static const cli_option options[] = {
 /* Adds the isovalues of a CT that are in the range of its values. */
 static void add_tissues(cli_info_facts *f, const cw_statistics *s)
 {
-    if (!cli_is_hounsfield(&f->volume.whole, s))
+    if (!cwi_is_hounsfield(&f->volume.whole, s))
         return;
     for (cli_level n = CLI_LEVEL_BONE; n <= CLI_LEVEL_METAL; n++) {
-        const double value = cli_hounsfield_level(n);
-        if (s->min < value && s->max >= value)
-            f->levels[f->level_count++] =
-                (cli_info_level){.name = cli_level_text(n, 0), .value = value};
+        const char *name = cli_level_text(n, 0);
+        double value;
+        if (cwi_hounsfield_level(name, &value) && s->min < value && s->max >= value)
+            f->levels[f->level_count++] = (cli_info_level){.name = name, .value = value};
     }
 }
 
@@ -75,7 +76,7 @@ static cw_status find_levels(cli_info_facts *f, int threads, cw_error *err)
     static const char *const names[] = {"otsu", "dark", "medium", "bright"};
     cw_statistics s;
     double values[CLI_INFO_LEVELS + 1];
-    cw_status st = cw_volume_statistics(&f->volume.view, CLI_LEVEL_BINS, threads, &s, err);
+    cw_status st = cw_volume_statistics(&f->volume.view, CWI_LEVEL_BINS, threads, &s, err);
     if (st != CW_OK)
         return st;
     int count = cw_statistics_otsu(&s, 1, values) ? 1 : 0;
@@ -85,7 +86,7 @@ static cw_status find_levels(cli_info_facts *f, int threads, cw_error *err)
         f->levels[f->level_count++] = (cli_info_level){.name = "zero", .value = 0};
     for (int n = 0; n < count; n++)
         f->levels[f->level_count++] =
-            (cli_info_level){.name = names[n], .value = cli_round_level(values[n])};
+            (cli_info_level){.name = names[n], .value = cwi_round_level(values[n])};
     if (count)
         add_tissues(f, &s);
     cw_statistics_free(&s);

@@ -20,14 +20,4 @@ CW_NODISCARD cw_status cli_choose_level(const cli_volume *volume, const cli_inpu
 CW_NODISCARD cw_status cli_find_level(const cli_volume *volume, const cli_input *input,
                                       double *iso, const char **how, cw_error *err);
 
-/* Bins of a histogram for Otsu's method. */
-enum { CLI_LEVEL_BINS = 512 };
-
-/* Rounds a level to the six digits that are printed, so that these name the same surface. */
-double cli_round_level(double value);
-
-/* Returns the isovalue of a CT in Hounsfield units between a tissue and what surrounds it.
- * level  CLI_LEVEL_BONE or behind it */
-double cli_hounsfield_level(cli_level level);
-
 #endif

@@ -229,24 +229,6 @@ void cli_describe_labels(const cli_volume *volume, const cw_labels *labels,
              v->components > 1 ? " in component 0" : "");
 }
 
-double cli_share_between(const cw_statistics *s, double low, double high)
-{
-    uint64_t count = 0;
-    for (size_t b = 0; b < s->bin_count; b++) {
-        const double value = s->min + s->bin_width * ((double)b + 0.5);
-        count += value >= low && value <= high ? s->bins[b] : 0;
-    }
-    return s->finite ? (double)count / (double)s->finite : 0;
-}
-
-bool cli_is_hounsfield(const cw_volume *volume, const cw_statistics *values)
-{
-    if (volume->known & CW_KNOWN_HOUNSFIELD)
-        return true;
-    return values->min <= -900 && values->max >= 100 &&
-           cli_share_between(values, -1100, -800) >= 0.01;
-}
-
 void cli_free_volume(cli_volume *volume)
 {
     cw_label_table_free(&volume->labels);

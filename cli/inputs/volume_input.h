@@ -354,14 +354,6 @@ enum { CLI_LABELS_TEXT = 128 };
 void cli_describe_labels(const cli_volume *volume, const cw_labels *labels,
                          char text[CLI_LABELS_TEXT]);
 
-/* Returns true if values are in Hounsfield units: as the file says, or as those of a CT are, with
- * air near -1000.
- * values  statistics of the volume, with bins */
-bool cli_is_hounsfield(const cw_volume *volume, const cw_statistics *values);
-
-/* Returns the share of values from low to high, by bins. */
-double cli_share_between(const cw_statistics *values, double low, double high);
-
 /* Says, and keeps as a note, that a volume of labels has several of them inside a surface,
  * which it joins. No levels: that any would. */
 CW_NODISCARD cw_status cli_tell_labels(cli_volume *volume, const double *iso, size_t count,

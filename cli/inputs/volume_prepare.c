@@ -6,6 +6,7 @@
 #include "cli/inputs/level_choice.h"
 #include "core/base/memory.h"
 #include "core/base/status.h"
+#include "core/volume/named_level.h"
 
 #include <cubewright/filter.h>
 #include <cubewright/slice_filter.h>
@@ -320,8 +321,8 @@ static cw_status expect_hounsfield(const cli_input *input, const cli_volume *vol
 {
     cw_statistics s = {0};
     cw_status st =
-        cw_volume_statistics(&volume->view, CLI_LEVEL_BINS, (int)input->threads, &s, err);
-    if (st == CW_OK && !cli_is_hounsfield(&volume->whole, &s))
+        cw_volume_statistics(&volume->view, CWI_LEVEL_BINS, (int)input->threads, &s, err);
+    if (st == CW_OK && !cwi_is_hounsfield(&volume->whole, &s))
         st = cwi_fail(err, CW_ERR_ARGUMENT,
                       "it is for a CT in Hounsfield units, with air near -1000; these values "
                       "are %g to %g",

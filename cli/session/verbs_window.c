@@ -3,6 +3,7 @@
 #include "cli/session/verbs.h"
 
 #include "core/base/status.h"
+#include "core/volume/named_level.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -30,7 +31,7 @@ const char *view_window_name(size_t n, double range[2])
 bool view_is_hounsfield(const view *v)
 {
     return v->document.has_volume &&
-           cli_is_hounsfield(&v->document.source.volume.whole, &v->document.statistics);
+           cwi_is_hounsfield(&v->document.source.volume.whole, &v->document.statistics);
 }
 
 static cw_status find_window(const view *v, const char *name, double range[2], cw_error *err)

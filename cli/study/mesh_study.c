@@ -15,6 +15,7 @@
 #include "core/base/status.h"
 #include "core/base/text.h"
 #include "core/mesh/mesh_triangle.h"
+#include "core/volume/named_level.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -81,7 +82,7 @@ cw_status cli_fit_level(cli_mesh_study *m, cw_error *err)
         m->is_fitted = true;
         m->fit_low = values[count / 4];
         m->fit_high = values[count - 1 - count / 4];
-        m->study.iso = cli_round_level(values[count / 2]);
+        m->study.iso = cwi_round_level(values[count / 2]);
         m->study.level = "fitted to the vertices";
     }
     cwi_free(values);

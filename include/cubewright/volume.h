@@ -287,6 +287,28 @@ CW_NODISCARD CW_API cw_status cw_statistics_join(const cw_statistics *parts, siz
 CW_API bool cw_statistics_otsu(const cw_statistics *statistics, int level_count,
                                double *levels);
 
+/* Finds the isovalue that a name stands for, rounded to six digits: the level that the command's
+ * --iso and `info` find.
+ * name     "otsu", between two classes of values; "dark", "medium" or "bright", between four;
+ *          "50%" or another share of the range of the values; "bone", "skin", "soft", "lung" or
+ *          "metal" of a CT in Hounsfield units
+ * threads  0 means all
+ * level    set to the isovalue
+ * Returns  CW_ERR_ARGUMENT for another name, and for a tissue where values are not in Hounsfield
+ *          units; CW_ERR_EMPTY where no value is finite or no level parts them; CW_ERR_NO_MEMORY */
+CW_NODISCARD CW_API cw_status cw_volume_level(const cw_volume *volume, const char *name,
+                                              int threads, double *level, cw_error *err);
+
+/* The same, by statistics that were made before.
+ * statistics  of the volume, with 512 bins for the levels of the command
+ * volume      borrowed; its voxels are not read
+ * name        as of cw_volume_level()
+ * level       set to the isovalue
+ * Returns     as cw_volume_level() */
+CW_NODISCARD CW_API cw_status cw_statistics_level(const cw_statistics *statistics,
+                                                  const cw_volume *volume, const char *name,
+                                                  double *level, cw_error *err);
+
 #ifdef __cplusplus
 }
 #endif

@@ -110,11 +110,18 @@ class Attributes(MutableMapping[str, npt.NDArray[Any]]):
         call(lib.cw_mesh_attribute_add, byref(self._struct), byref(like), None)
         self[name][...] = array
 
+    def pack(self) -> list[dict[str, Any]]:
+        """Returns copies of all: what add() takes."""
+        rows = [(name, self._row(name)) for name in self]
+        return [
+            {"name": name, "values": np.array(self[name]), "on": ON[r.on], "interpolation": INTERPOLATION[r.interpolation]}
+            for name, r in rows
+        ]
+
     def update_from(self, other: Attributes) -> None:
         """Adds copies of the attributes of a mesh that has the same elements."""
-        for name in other:
-            row = other._row(name)
-            self.add(name, other[name], on=ON[row.on], interpolation=INTERPOLATION[row.interpolation])
+        for attribute in other.pack():
+            self.add(**attribute)
 
     def _take(self, name: str, values: npt.ArrayLike, on: str | None) -> tuple[npt.NDArray[Any], int]:
         array = np.asarray(values)

@@ -13,7 +13,7 @@ import numpy.typing as npt
 
 from . import _declarations as c
 from ._errors import call, name_keywords
-from ._extract import AnyVolume, extract, take_inside
+from ._extract import AnyVolume, extract, take_inside, take_iso
 from ._library import lib
 from ._memory import unpack
 from ._mesh import Mesh, take_mesh
@@ -223,7 +223,7 @@ def check(
     profile: str = "basic",
     deep: bool = False,
     source: AnyVolume | None = None,
-    iso: float | None = None,
+    iso: float | str | None = None,
     inside: str = "auto",
     open: bool = False,
     reference: Mesh | None = None,
@@ -267,10 +267,10 @@ def check(
         m.measure_defects(take_flag("deep", deep) or bool(lib.cw_check_wants_crossings(wanted)))
         if PROFILES[wanted] == "print":
             m.measure_print(printer)
-        if source is not None:
+        if source is not None and iso is not None:
             volume = take_volume(source)
             low = take_inside(inside, volume)
-            m.compare_with_source(volume, take_number("iso", iso), low, take_flag("open", open))
+            m.compare_with_source(volume, take_iso(iso, volume._struct, threads), low, take_flag("open", open))
         if other is not None:
             m.compare_with_reference(other)
         return m.judge(wanted)

@@ -4375,6 +4375,8 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "cw_statistics_free": (None, [POINTER(cw_statistics)]),
     "cw_statistics_join": (c_int, [POINTER(cw_statistics), c_size_t, c_size_t, POINTER(cw_statistics), POINTER(cw_error)]),
     "cw_statistics_otsu": (c_bool, [POINTER(cw_statistics), c_int, POINTER(c_double)]),
+    "cw_volume_level": (c_int, [POINTER(cw_volume), c_char_p, c_int, POINTER(c_double), POINTER(cw_error)]),
+    "cw_statistics_level": (c_int, [POINTER(cw_statistics), POINTER(cw_volume), c_char_p, POINTER(c_double), POINTER(cw_error)]),
     "cw_mesh_free": (None, [POINTER(cw_mesh)]),
     "cw_mesh_attribute_add": (c_int, [POINTER(cw_mesh), POINTER(cw_attribute), POINTER(POINTER(cw_attribute)), POINTER(cw_error)]),
     "cw_mesh_attribute_find": (POINTER(cw_attribute), [POINTER(cw_mesh), c_char_p]),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import operator
 import threading
+import warnings
 import weakref
 from collections.abc import Iterable, Sequence
 from ctypes import POINTER, byref, c_double, c_size_t, c_uint32, memmove, memset, pointer, sizeof
@@ -52,6 +53,31 @@ def take_inside(inside: str, volume: Volume) -> bool:
     """Returns whether low values are inside. 'auto' is above, in level sets below."""
     choice = take_choice("inside", inside, ("auto", *INSIDE))
     return volume.level_set if choice == 0 else choice == 2
+
+
+def take_iso(iso: float | str, view: c.cw_volume, threads: int = 0) -> float:
+    """Returns the number of an isovalue, or the one that a name stands for."""
+    if not isinstance(iso, str):
+        return take_number("iso", iso)
+    level = c_double()
+    call(lib.cw_volume_level, byref(view), iso.encode(), take_threads(threads), byref(level))
+    return level.value
+
+
+def warn_of_labels(view: c.cw_volume, iso: float, low: bool) -> None:
+    """Warns if integers look like labels, several of which the surface at an isovalue joins."""
+    if view.type in (c.cw_type.CW_F32, c.cw_type.CW_F64):
+        return
+    labels = c.cw_labels()
+    call(lib.cw_volume_labels, byref(view), byref(labels))
+    values = labels.value[: labels.count] if labels.found else []
+    inside = sum(value != 0 and (value < iso if low else value >= iso) for value in values)
+    if inside > 1:
+        more = "more than " if labels.more else ""
+        warnings.warn(
+            f"these look like labels: the surface at {iso:g} joins {more}{inside} of them; extract_labels() takes each",
+            stacklevel=4,
+        )
 
 
 @dataclass(frozen=True)
@@ -132,7 +158,7 @@ class Settings:
 
 def extract(
     volume: AnyVolume,
-    iso: float,
+    iso: float | str,
     *,
     inside: str = "auto",
     open: bool = False,
@@ -167,7 +193,8 @@ def extract(
     run in the order in which they stand here.
 
     volume      a Volume, or an array of shape (z, y, x) with voxels of 1 mm
-    iso         in the unit of the values, after slope and intercept
+    iso         in the unit of the values, after slope and intercept; or a name of Volume.level(), such as
+                "otsu". Integers that look like labels, of which the surface joins several, are warned of
     inside      'above' or 'below' the isovalue; 'auto': above, in level sets below
     open        leave the surface open where it meets the border; default: capped
     topology    'field', or 'simple' for one table of cases
@@ -217,7 +244,7 @@ class Levels(list[Mesh]):
 
 def extract_levels(
     volume: AnyVolume,
-    iso: float,
+    iso: float | str,
     triangles: Sequence[int],
     *,
     maps: str | Iterable[str] = (),
@@ -242,7 +269,7 @@ def extract_levels(
     view = source._select(component, step)
     settings = Settings(**options)
     reporter = Reporter(settings.progress)
-    desc = settings.describe(iso, source, reporter)
+    desc = settings.describe(take_iso(iso, view, settings.threads), source, reporter)
     desc.lod, desc.lod_count = (c_size_t * len(counts))(*counts), len(counts)
     wanted = take_maps(maps)
     if wanted:
@@ -265,13 +292,15 @@ def extract_levels(
 
 
 def run_pipeline(
-    volume: AnyVolume, iso: float, settings: Settings, component: int = 0, step: int = 0, extractor: Any = None
+    volume: AnyVolume, iso: float | str, settings: Settings, component: int = 0, step: int = 0, extractor: Any = None
 ) -> Mesh:
     """Runs the pipeline for one surface."""
     source = take_volume(volume)
     view = source._select(component, step)
     reporter = Reporter(settings.progress)
-    desc = settings.describe(iso, source, reporter)
+    desc = settings.describe(take_iso(iso, view, settings.threads), source, reporter)
+    if extractor is None:
+        warn_of_labels(view, desc.extract.isovalue, desc.extract.inside_is_low)
     mesh = Mesh._from_c(c.cw_mesh())
     facts = c.cw_pipeline_facts()
     try:
@@ -329,7 +358,7 @@ class Extractor:
         call(lib.cw_extractor_new, byref(self._view), byref(self._extractor))
         weakref.finalize(self, lib.cw_extractor_free, self._extractor).atexit = False
 
-    def extract(self, iso: float, **options: Any) -> Mesh:
+    def extract(self, iso: float | str, **options: Any) -> Mesh:
         """Extracts the surface at an isovalue; options and errors as of extract()."""
         settings = Settings(**options)
         if self._user == threading.get_ident():

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy as copying
 from ctypes import POINTER, byref, c_double, c_float, c_uint8, c_uint32
 from typing import Any
 
@@ -195,6 +196,23 @@ class Mesh:
         lib.cw_mesh_bounds(byref(self._struct), low, high)
         return np.array([low, high])
 
+    @property
+    def area(self) -> float:
+        """Area of all triangles in mm2, measured at each call; check() gives it too."""
+        return self._measure().area_mm2
+
+    @property
+    def volume(self) -> float | None:
+        """Volume in mm3, positive if triangles wind outward; None: the mesh is not closed. Measured at each call."""
+        quality = self._measure()
+        return quality.volume_mm3 if lib.cw_quality_is_closed_manifold(byref(quality)) else None
+
+    def _measure(self) -> c.cw_quality:
+        quality = c.cw_quality()
+        desc = c.cw_quality_desc(weld=c.cw_weld.CW_WELD_LOCAL)
+        call(lib.cw_quality_measure, byref(self._struct), byref(desc), byref(quality))
+        return quality
+
     def world_vertices(self) -> npt.NDArray[np.float64]:
         """Returns (n, 3) world coordinates in double precision, LPS millimetres; a copy."""
         return self.vertices + self.origin
@@ -206,6 +224,35 @@ class Mesh:
         copied._struct.affine = self._struct.affine
         copied.attributes.update_from(self.attributes)
         return copied
+
+    def __len__(self) -> int:
+        """Returns the number of triangles."""
+        return int(self._struct.triangle_count)
+
+    def __bool__(self) -> bool:
+        return True  # also without triangles
+
+    def __reduce__(self) -> Any:
+        """Pickles copies of the arrays, of the attributes, and of the facts."""
+        arrays = {name: np.array(value) for name in ARRAYS if (value := self._array(name)) is not None}
+        arrays["origin"] = np.array(self.origin)
+        return restore_mesh, (arrays, np.array(self._struct.affine), self.attributes.pack(), self.facts)
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> Mesh:
+        _, arguments = self.__reduce__()
+        return restore_mesh(*copying.deepcopy(arguments, memo))
+
+    def _repr_png_(self) -> bytes | None:
+        """Returns a picture for notebooks; None without triangles."""
+        from ._notebook import draw_mesh
+
+        return draw_mesh(self)
+
+    def _repr_html_(self) -> str:
+        """Returns the picture and the facts, for notebooks."""
+        from ._notebook import describe_mesh
+
+        return describe_mesh(self)
 
     def voxelize(self, *, like: Any = None, spacing: Any = None, **options: Any) -> Any:
         """Makes voxels of the mesh, which is closed: see voxelize(). Returns a Voxelized."""
@@ -260,6 +307,19 @@ class Mesh:
         with_text = f", {', '.join(has)}" if has else ""
         counts = f"{self._struct.vertex_count} vertices, {self._struct.triangle_count} triangles"
         return f"<cubewright.Mesh {counts}{with_text}>"
+
+
+def restore_mesh(
+    arrays: dict[str, Any], affine: npt.NDArray[Any], attributes: list[dict[str, Any]], facts: dict[str, Any]
+) -> Mesh:
+    """Makes a mesh of what was pickled."""
+    mesh = Mesh.from_arrays(**arrays)
+    for row, numbers in zip(mesh._struct.affine, affine.tolist()):
+        row[:] = numbers
+    for attribute in attributes:
+        mesh.attributes.add(**attribute)
+    mesh.facts = facts
+    return mesh
 
 
 def take_array(name: str, value: npt.ArrayLike) -> npt.NDArray[Any]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Mapping, Sequence
-from ctypes import POINTER, byref, c_double, c_uint8, pointer
+from ctypes import POINTER, byref, c_double, c_size_t, c_uint8, pointer, string_at
 from typing import Any, Union
 
 import numpy as np
@@ -225,6 +225,17 @@ def write_png(path: Path, picture: npt.NDArray[np.uint8]) -> None:
     """Writes a picture of (height, width, 4) or (height, width, 3) uint8 as a PNG."""
     image, _pixels = borrow_image(picture)
     call(lib.cw_image_write, take_path("path", path), byref(image))
+
+
+def make_png(picture: npt.NDArray[np.uint8], is_color: bool = True) -> bytes:
+    """Returns the bytes of a PNG file. is_color: it is tagged as sRGB."""
+    image, _pixels = borrow_image(picture)
+    data, size = POINTER(c_uint8)(), c_size_t()
+    call(lib.cw_image_encode, byref(image), is_color, byref(data), byref(size))
+    try:
+        return string_at(data, size.value)
+    finally:
+        lib.cw_bytes_free(data)
 
 
 def borrow_image(picture: npt.NDArray[np.uint8]) -> tuple[c.cw_image, npt.NDArray[np.uint8]]:

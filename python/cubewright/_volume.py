@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy as copying
 from collections.abc import Sequence
 from ctypes import POINTER, byref, c_double, c_int64, c_uint32, c_void_p
 from dataclasses import dataclass, field
@@ -14,7 +15,7 @@ from . import _declarations as c
 from ._errors import call
 from ._library import lib
 from ._memory import Owner, lend_array
-from ._options import take_choice, take_count, take_flag, take_lengths, take_number, take_numbers, take_threads
+from ._options import take_choice, take_count, take_flag, take_lengths, take_number, take_numbers, take_text, take_threads
 
 TYPES: dict[str, int] = {
     "u1": c.cw_type.CW_U8,
@@ -71,9 +72,10 @@ class Volume:
     array        of shape (z, y, x); with components=True (z, y, x, component), with steps=True
                  (step, z, y, x), or both. Anything that numpy.asarray() takes without a copy.
                  Types: bool, signed and unsigned integers of 8, 16 and 32 bits, float32,
-                 float64. Others are TypeErrors: convert them, such as array.astype('f4').
-    copy         None: share the array's memory, with any strides. A copy is made only of arrays
-                 in another byte order, not aligned, or that repeat memory (broadcast arrays).
+                 float64. Copies are made of float16, and of int64 and uint64 whose values fit 32 bits.
+                 Others are TypeErrors, which name a conversion.
+    copy         None: share the array's memory, with any strides. A copy is made only of other types, and
+                 of arrays in another byte order, not aligned, or that repeat memory (broadcast arrays).
                  False: such arrays are ValueErrors. True: always copy
     spacing      distance between voxels in mm, or as a text with a unit ("12um"): one, or x, y, z; default 1
     origin       world point of the first voxel; default 0, 0, 0
@@ -264,6 +266,20 @@ class Volume:
         finally:
             lib.cw_statistics_free(byref(out))
 
+    def level(self, name: str, *, component: int = 0, step: int = 0, threads: int = 0) -> float:
+        """Returns the isovalue that a name stands for; extract(volume, name) takes it, too.
+
+        name  "otsu", between two classes of values [Otsu1979]; "dark", "medium" or "bright", between four
+              [Liao2001]; "50%" or another share of the range; "bone", "skin", "soft", "lung" or "metal" of a CT in
+              Hounsfield units
+        Raises Error: ARGUMENT for another name, and for a tissue where values are not in Hounsfield units; EMPTY
+        where no level parts the values.
+        """
+        level = c_double()
+        view = self._select(component, step)
+        call(lib.cw_volume_level, byref(view), take_text("name", name), take_threads(threads), byref(level))
+        return level.value
+
     def dense(self, max_voxels: int = 2**32) -> Volume:
         """Copies the leaves and tiles of a sparse grid into a volume with an array.
 
@@ -425,6 +441,50 @@ class Volume:
             lib.cw_volume_resample, distances, KERNELS.index(kernel), threads=threads
         )
 
+    def __len__(self) -> int:
+        """Returns the number of slices, as of the array of one component and step."""
+        return self.shape[0]
+
+    def _planes(self) -> list[npt.NDArray[np.float64]] | None:
+        """Returns copies of the coordinates of a rectilinear grid, which its affine takes to the world."""
+        if self.kind != "rectilinear":
+            return None
+        return [np.array(planes[:count]) for planes, count in zip(self._struct.coordinates, self._resolved.dim)]
+
+    def __reduce__(self) -> Any:
+        """Pickles a copy of the voxels, and their place."""
+        if self.kind not in ("even", "rectilinear"):
+            raise TypeError(f"a volume of the kind {self.kind} cannot be pickled; dense() of a sparse grid can")
+        v = self._resolved
+        state = {
+            "array": np.ascontiguousarray(self.array),
+            "affine": self.affine,
+            "coordinates": self._planes(),
+            "slope": self.slope,
+            "intercept": self.intercept,
+            "nodata": self.nodata,
+            "components": v.components > 1,
+            "steps": v.steps > 1,
+        }
+        kept = {"known": self._struct.known, "labels": self.labels, "format": self.format, "ids": self.ids}
+        return restore_volume, (state, kept)
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> Volume:
+        _, arguments = self.__reduce__()
+        return restore_volume(*copying.deepcopy(arguments, memo))
+
+    def _repr_png_(self) -> bytes | None:
+        """Returns a picture for notebooks: the middle slices."""
+        from ._notebook import draw_volume
+
+        return draw_volume(self)
+
+    def _repr_html_(self) -> str:
+        """Returns the picture and the facts, for notebooks."""
+        from ._notebook import describe_volume
+
+        return describe_volume(self)
+
     def _filter(self, function: Any, *arguments: Any, threads: int) -> Volume:
         out = Owner(c.cw_volume(), lib.cw_volume_free)
         desc = c.cw_filter_desc(threads=take_threads(threads))
@@ -450,6 +510,15 @@ class Volume:
         return f"<cubewright.Volume (z, y, x) {self.shape} {self.dtype}{more}, {spacing} mm, {self.kind}>"
 
 
+def restore_volume(state: dict[str, Any], kept: dict[str, Any]) -> Volume:
+    """Makes a volume of what was pickled."""
+    volume = Volume(**state)
+    volume._struct.known = kept["known"]
+    volume._set(volume._struct, volume._owner, volume._array)
+    volume.labels, volume.format, volume.ids = kept["labels"], kept["format"], kept["ids"]
+    return volume
+
+
 def place_inside(level: float, inside: str) -> c.cw_inside:
     low = take_choice("inside", inside, ("above", "below")) == 1
     return c.cw_inside(level=take_number("level", level), inside_is_low=low)
@@ -460,6 +529,29 @@ def take_axes(name: str, value: Any) -> list[float]:
     return take_numbers(name, [value] * 3 if np.ndim(value) == 0 else value, 3)
 
 
+def convert_voxels(voxels: npt.NDArray[Any], copy: bool | None) -> npt.NDArray[Any]:
+    """Returns a copy of another type that holds each value: of float16, and of integers that fit 32 bits."""
+    kind = None
+    advice = "array.astype('f4')"
+    if voxels.dtype == np.float16:
+        kind = "f4"
+    elif voxels.dtype.kind in "iu":
+        low, high = (int(voxels.min()), int(voxels.max())) if voxels.size else (0, 0)
+        kind = next((k for k in ("i4", "u4") if np.iinfo(k).min <= low and high <= np.iinfo(k).max), None)
+        advice = "array.astype('f8'), exact up to 2**53, or extract_labels() where they are labels"
+        if kind is None:
+            raise TypeError(f"voxels are {low} to {high}, which 32 bits do not hold; {advice}")
+    elif voxels.dtype.kind == "c":
+        advice = "abs(array), array.real or array.imag"
+    if kind is None:
+        raise TypeError(
+            f"voxels of type {voxels.dtype} are not taken; expected bool, integers, or floats of up to 64 bits: {advice}"
+        )
+    if copy is False:
+        raise ValueError(f"voxels of type {voxels.dtype} need a copy: array.astype('{kind}')")
+    return voxels.astype(kind)
+
+
 def take_voxels(array: Any, axes: int, copy: bool | None) -> npt.NDArray[Any]:
     """Returns an array that the library can address; a copy only where it has to be one."""
     if isinstance(array, np.ma.MaskedArray):
@@ -468,10 +560,7 @@ def take_voxels(array: Any, axes: int, copy: bool | None) -> npt.NDArray[Any]:
     if voxels.dtype == np.bool_:
         voxels = voxels.view(np.uint8)
     if voxels.dtype.str[1:] not in TYPES:
-        raise TypeError(
-            f"voxels of type {voxels.dtype} are not taken; expected bool, 8 to 32 bit integers, "
-            "float32 or float64, such as array.astype('f4')"
-        )
+        voxels = convert_voxels(voxels, copy)
     if voxels.ndim != axes:
         shape = "z, y, x" if axes == 3 else "z, y, x with components, steps or both"
         raise ValueError(f"the array has {voxels.ndim} axes; {axes} were expected ({shape})")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from ctypes import POINTER, byref, c_char, c_size_t, c_uint8, cast, create_string_buffer, pointer, string_at
+from ctypes import POINTER, byref, c_char, c_uint8, cast, create_string_buffer, pointer
 from dataclasses import dataclass
 from typing import Any, Union
 
@@ -11,13 +11,12 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _declarations as c
-from ._errors import call
 from ._library import lib
 from ._mesh import Mesh, take_mesh
 from ._options import take_choice, take_count, take_flag, take_length, take_path, take_text
 from ._progress import Progress, Reporter
 from ._read import PICTURES, UNITS, Part, Path
-from ._render import borrow_image
+from ._render import make_png
 from ._volume import Label, Volume
 
 COMPRESSIONS = ("none", "quantize", "draco", "meshopt")
@@ -160,12 +159,9 @@ def borrow_bytes(use: str, data: bytes) -> c.cw_texture:
 
 def encode_picture(picture: npt.NDArray[np.uint8]) -> c.cw_texture:
     """Makes a PNG of numbers, which are no colours, in memory of Python's."""
-    image, _pixels = borrow_image(picture)
-    data, size = POINTER(c_uint8)(), c_size_t()
-    call(lib.cw_image_encode, byref(image), False, byref(data), byref(size))
-    kept = create_string_buffer(string_at(data, size.value), size.value)
-    lib.cw_bytes_free(data)
-    return c.cw_texture(bytes=cast(kept, POINTER(c_uint8)), size=size.value)
+    data = make_png(picture, is_color=False)
+    kept = create_string_buffer(data, len(data))
+    return c.cw_texture(bytes=cast(kept, POINTER(c_uint8)), size=len(data))
 
 
 def summarize(r: c.cw_compressed) -> Written:

@@ -470,7 +470,7 @@ class Mistakes(Case):
         ball = make_ball()
         for wrong in (
             lambda: cw.extract(ball, 0, isovalue=3),
-            lambda: cw.extract(ball, "300"),
+            lambda: cw.extract(ball, b"otsu"),
             lambda: cw.extract(ball, True),
             lambda: cw.extract(ball, 0, open=1),
             lambda: cw.extract(ball, 0, threads=1.5),

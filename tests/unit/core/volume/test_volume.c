@@ -336,6 +336,41 @@ static void otsu_parts_classes(void **state)
     cw_statistics_free(&s);
 }
 
+static void levels_have_names(void **state)
+{
+    (void)state;
+    enum { SIZE = 16 };
+    static const int16_t density[4] = {-1000, -90, 50, 1000}; /* air, fat, muscle, bone */
+    int16_t voxels[SIZE * SIZE * SIZE];
+    for (int n = 0; n < SIZE * SIZE * SIZE; n++)
+        voxels[n] = density[n % 4];
+    const cw_volume v = {.data = voxels, .dim = {SIZE, SIZE, SIZE}, .type = CW_I16};
+    double level = 7, three[3];
+    cw_error err = {0};
+    cw_statistics s;
+    assert_ok(cw_volume_statistics(&v, 512, 0, &s, &err), err);
+    assert_true(cw_statistics_otsu(&s, 3, three));
+    static const char *const names[] = {"dark", "medium", "bright"};
+    for (int n = 0; n < 3; n++) {
+        assert_ok(cw_statistics_level(&s, &v, names[n], &level, &err), err);
+        assert_near(level, three[n], 1e-5 * fabs(three[n]));
+        assert_true(level > density[n] && level < density[n + 1]);
+    }
+    cw_statistics_free(&s);
+    assert_ok(cw_volume_level(&v, "25%", 0, &level, &err), err);
+    assert_near(level, -500, 1e-9);
+    assert_ok(cw_volume_level(&v, "bone", 0, &level, &err), err);
+    assert_near(level, 226, 1e-9);
+    assert_int_equal(cw_volume_level(&v, "bones", 0, &level, &err), CW_ERR_ARGUMENT);
+    assert_non_null(strstr(err.message, "isovalue bones; a number, otsu"));
+    assert_near(level, 226, 1e-9);
+    const cw_volume flat = {.data = (const uint8_t[8]){0}, .dim = {2, 2, 2}};
+    assert_int_equal(cw_volume_level(&flat, "skin", 0, &level, &err), CW_ERR_ARGUMENT);
+    assert_non_null(strstr(err.message, "Hounsfield"));
+    assert_int_equal(cw_volume_level(&flat, "otsu", 0, &level, &err), CW_ERR_EMPTY);
+    assert_non_null(strstr(err.message, "too few"));
+}
+
 static void statistics_do_not_depend_on_threads(void **state)
 {
     (void)state;
@@ -735,6 +770,7 @@ int main(void)
         cmocka_unit_test(no_bin_counts_what_has_no_value),
         cmocka_unit_test(integers_get_no_more_bins_than_values),
         cmocka_unit_test(otsu_parts_classes),
+        cmocka_unit_test(levels_have_names),
         cmocka_unit_test(scaled_integers_fall_into_their_own_bins),
         cmocka_unit_test(statistics_do_not_depend_on_threads),
         cmocka_unit_test(joined_statistics_are_those_of_the_whole),
