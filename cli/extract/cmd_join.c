@@ -47,7 +47,7 @@ static cw_status run_join(void *p, cw_error *err)
                                 .name = args->name,
                                 .local = args->local,
                                 .no_clobber = args->no_clobber};
-    cw_status st = cw_mesh_write_check(args->output, &desc, err);
+    cw_status st = cli_check_writable(args->output, &desc, err);
     if (st == CW_OK)
         st = cli_read_manifest(folder, &m, err);
     if (st == CW_OK)

@@ -207,7 +207,8 @@ CW_NODISCARD CW_API cw_status cw_volume_read(const char *path, const cw_read_des
  *
  * source   borrowed until the call returns
  * desc     as for cw_volume_read(); stored is not used
- * volume   as for cw_volume_read(), as is format
+ * volume   filled on success, else emptied; free it with cw_volume_free()
+ * format   set to the reader's name (static); may be NULL
  * Returns  as cw_stored_file_open() and cw_volume_read()
  * Cost     that of cw_volume_read(), and one copy of the bytes meanwhile */
 CW_NODISCARD CW_API cw_status cw_volume_read_memory(const cw_byte_source *source,
@@ -515,7 +516,8 @@ CW_NODISCARD CW_API cw_status cw_mesh_read(const char *path, const cw_mesh_read_
  *
  * source   borrowed until the call returns
  * desc     as for cw_mesh_read(); stored is not used
- * mesh     as for cw_mesh_read(), as is file
+ * mesh     filled on success, emptied on failure; free it with cw_mesh_free()
+ * file     filled on success; may be NULL
  * Returns  as cw_stored_file_open() and cw_mesh_read()
  * Cost     that of cw_mesh_read(), and one copy of the bytes meanwhile */
 CW_NODISCARD CW_API cw_status cw_mesh_read_memory(const cw_byte_source *source,
@@ -714,7 +716,8 @@ CW_NODISCARD CW_API cw_status cw_mesh_write(const char *path, const cw_mesh *mes
  *          object inside. NULL: desc->format is the format
  * mesh     borrowed
  * desc     as for cw_mesh_write(); sink is not used
- * bytes    set to *size bytes, to be freed with cw_bytes_free(); NULL on failure
+ * bytes    set to the file's bytes, to be freed with cw_bytes_free(); NULL on failure
+ * size     set to their number
  * Returns  as cw_mesh_write(); CW_ERR_UNSUPPORTED: it takes more files than one, as OBJ with
  *          materials or pictures does
  * Cost     that of cw_mesh_write(), and the bytes twice until the call returns */
@@ -722,7 +725,15 @@ CW_NODISCARD CW_API cw_status cw_mesh_write_memory(const char *name, const cw_me
                                                    const cw_write_desc *desc, uint8_t **bytes,
                                                    size_t *size, cw_error *err);
 
-/* Writes a volume to memory, as cw_mesh_write_memory() does a mesh. */
+/* Writes a volume to memory: the bytes of the file that cw_volume_write() makes.
+ *
+ * name     a file name such as "scan.nii.gz"; NULL: desc->format is the format
+ * volume   borrowed
+ * desc     as for cw_volume_write(); sink is not used
+ * bytes    set to the file's bytes, to be freed with cw_bytes_free(); NULL on failure
+ * size     set to their number
+ * Returns  as cw_volume_write()
+ * Cost     that of cw_volume_write(), and the bytes twice until the call returns */
 CW_NODISCARD CW_API cw_status cw_volume_write_memory(const char *name, const cw_volume *volume,
                                                      const cw_write_desc *desc, uint8_t **bytes,
                                                      size_t *size, cw_error *err);

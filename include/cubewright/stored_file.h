@@ -47,10 +47,12 @@ typedef struct cw_stored_file cw_stored_file;
 CW_NODISCARD CW_API cw_status cw_stored_file_open(const cw_byte_source *source,
                                                   cw_stored_file **file, cw_error *err);
 
-/* Drops the bytes. Harmless on NULL. */
+/* Drops the bytes.
+ * file  a stored file that no call reads any more, or NULL */
 CW_API void cw_stored_file_close(cw_stored_file *file);
 
-/* Returns the number of bytes; 0 for NULL. */
+/* Returns the number of bytes; 0 for NULL.
+ * file  a stored file, or NULL */
 CW_API uint64_t cw_stored_file_size(const cw_stored_file *file);
 
 /* A receiver of the bytes of a file that is written, in place of a path: cw_write_desc.sink. It
