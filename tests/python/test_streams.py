@@ -18,7 +18,7 @@ def make_volume():
 
 
 class Counted(io.BytesIO):
-    """Gives and takes a few bytes at a time, and fails where it is told to."""
+    """Gives and takes a few bytes at a time, and can fail after some calls."""
 
     def __init__(self, data=b"", piece=1000, fails_after=None):
         super().__init__(data)
