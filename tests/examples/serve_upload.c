@@ -10,8 +10,8 @@
 
 enum { MAX_UPLOAD = 64 << 20 };
 
-/* Returns the volume of untrusted bytes. Nobody knows what strangers send, so everything has a limit; a
- * library that breaks on the bytes breaks in a process of its own. */
+/* Reads the volume of untrusted bytes within limits. A library that breaks on them breaks in a process of
+ * its own. */
 static cw_status read_upload(const void *bytes, size_t size, const char *name,
                              cw_volume *volume, cw_error *err)
 {
