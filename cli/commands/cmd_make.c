@@ -26,7 +26,8 @@ typedef struct make_args {
 static const make_args defaults = {.type = CW_F32, .dims = {.count = 3, .n = {64, 64, 64}}};
 
 static const cli_option options[] = {
-    {"output", 'o', CLI_TEXT, "FILE", "Volume to write: .nrrd, .nii, .nii.gz or .mha",
+    {"output", 'o', CLI_TEXT, "FILE",
+     "Volume to write: .nrrd, .nii, .nii.gz or .mha; - is the standard output (with --format)",
      offsetof(make_args, output), CLI_VALUES_VOLUME_OUTPUT},
     {"list", 'l', CLI_FLAG, NULL, "List the fields and their isovalues",
      offsetof(make_args, list)},

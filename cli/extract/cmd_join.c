@@ -15,7 +15,8 @@ typedef struct join_args {
 static const join_args defaults = {.check = true};
 
 static const cli_option options[] = {
-    {"output", 'o', CLI_TEXT, "FILE", "Mesh to write, in the format of its extension",
+    {"output", 'o', CLI_TEXT, "FILE",
+     "Mesh to write, in the format of its extension; - is the standard output (with --format)",
      offsetof(join_args, output), CLI_VALUES_MESH_OUTPUT},
     {"format", 0, CLI_TEXT, "NAME", "Format to write; names as in 'formats' (by extension)",
      offsetof(join_args, format), CLI_VALUES_MESH_WRITER},

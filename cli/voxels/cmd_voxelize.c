@@ -24,7 +24,7 @@ typedef struct voxelize_args {
 
 static const cli_option options[] = {
     {"output", 'o', CLI_TEXT, "FILE",
-     "Volume to write: .nrrd, .nii, .nii.gz or .mha; may hold {stem}",
+     "Volume to write: .nrrd, .nii, .nii.gz or .mha; - is the standard output (with --format); may hold {stem}",
      offsetof(voxelize_args, output), CLI_VALUES_VOLUME_OUTPUT},
     {"partial", 0, CLI_FLAG, NULL,
      "Write the fraction of each voxel that is inside, 0 to 1 (off: a label for each part)",

@@ -29,7 +29,7 @@ typedef struct cw_byte_source {
 } cw_byte_source;
 
 /* The bytes of a file that has no path, kept for calls that read them. They are in a file without
- * a name, which ends with the process at the latest. */
+ * a name, which ends with the process at the latest. Several threads may read it at the same time. */
 typedef struct cw_stored_file cw_stored_file;
 
 /* Keeps the bytes of a source, to be read as often as needed: cw_read_desc.stored and

@@ -1,5 +1,6 @@
 # `-` is standard input and output: the bytes and codes are those of files, messages go to standard error,
 # and nothing is left behind.
+. "$TESTS/support/wait.sh"
 TMPDIR=$PWD/temporary
 export TMPDIR
 mkdir temporary
@@ -77,4 +78,18 @@ grep -c '"bytes": 225684,' r.json
     echo "$?" >code
 } | true
 cat code said
+
+# a signal while a pipe is read: the run ends, and leaves nothing
+mkfifo slow
+cubewright extract - --iso 0 -o never.stl -q <slow 2>said &
+run=$!
+exec 3>slow
+printf NRRD >&3
+is_reading() { ls -l /proc/$run/fd 2>/dev/null | grep -q 'temporary.*deleted'; }
+wait_until is_reading
+kill -TERM $run
+wait $run
+echo "$? $(cat said)"
+exec 3>&-
+[ -e never.stl ] && echo "it was written"
 ls temporary
