@@ -7,6 +7,7 @@
 #include "cli/framework/option_rules.h"
 #include "cli/framework/run_config.h"
 #include "cli/framework/stack_space.h"
+#include "cli/framework/standard_streams.h"
 #include "cli/help/help_search.h"
 #include "cli/inputs/volume_input.h"
 #include "cli/results/output_names.h"
@@ -149,6 +150,8 @@ static cw_status run_words(const cli_command *command, const cli_words *words, c
     cli_console_start(args, CLI_PROGRESS_AUTO);
     if (st == CW_OK && !args->help)
         st = cli_check_rules(command, args, err);
+    if (st == CW_OK && !args->help)
+        st = cli_streams_open(command, args, options, err);
     if (st == CW_OK && args->save_config)
         st = check_save(args, options, err);
     if (st == CW_OK && args->help)
@@ -159,6 +162,7 @@ static cw_status run_words(const cli_command *command, const cli_words *words, c
         st = run_parsed(command, args, err);
     if (st == CW_OK && args->save_config)
         st = cli_save_config(args->save_config, err);
+    cli_streams_close();
     free(options);
     return st;
 }
@@ -212,8 +216,8 @@ int main(int argc, char **argv)
     if (command)
         st = run_command(command, argc > 1 ? argc - 2 : 0, argv + (argc > 1 ? 2 : 1), &err);
     if (st == CW_OK && (fflush(stdout) != 0 || ferror(stdout)))
-        st = cwi_fail(&err, CW_ERR_OUTPUT, "the standard output cannot be written");
-    if (st != CW_OK)
+        st = cli_fail_standard(&err);
+    if (st != CW_OK && !cli_pipe_is_closed())
         cli_say_error(err.message);
     return cw_status_exit_code(st);
 }

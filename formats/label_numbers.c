@@ -5,6 +5,7 @@
 #include "core/base/status.h"
 #include "core/volume/label_ids.h"
 #include "core/volume/volume.h"
+#include "formats/bytes/input_file.h"
 
 #include <string.h>
 
@@ -298,6 +299,7 @@ static cw_status count_slices(void *user, const cw_slice_source *source, cw_erro
 cw_status cw_label_ids_read(const char *path, const cw_read_desc *desc, size_t step,
                             cw_label_ids *ids, cw_error *err)
 {
+    path = cwi_input_name(path, desc ? desc->stored : NULL);
     CWI_REQUIRE(err, path, ids);
     CWI_REQUIRE_VERSION(err, desc, 0);
     cw_read_desc d = desc ? *desc : (cw_read_desc){0};

@@ -71,7 +71,9 @@ static cw_status read_file(const char *path, cwi_mesh_input *in, cw_mesh *mesh,
                            cw_mesh_file *metadata, cw_error *err)
 {
     memset(mesh, 0, sizeof *mesh);
-    cw_status st = cwi_input_open(&in->file, path, err);
+    const cw_stored_file *stored = in->desc.stored;
+    cw_status st = stored ? cwi_input_open_stored(&in->file, stored, err)
+                          : cwi_input_open(&in->file, path, err);
     in->file.allow_external = in->desc.allow_external;
     if (st == CW_OK)
         st = read_open_file(in, mesh, metadata, err);
@@ -94,6 +96,7 @@ static void free_marks(cwi_mesh_input *in)
 cw_status cw_mesh_read(const char *path, const cw_mesh_read_desc *desc, cw_mesh *mesh,
                        cw_mesh_file *file, cw_error *err)
 {
+    path = cwi_input_name(path, desc ? desc->stored : NULL);
     CWI_REQUIRE(err, path, mesh);
     CWI_REQUIRE_VERSION(err, desc, 0);
     cwi_mesh_input in = {.desc = resolve_desc(desc)};
@@ -110,6 +113,7 @@ cw_status cw_mesh_read(const char *path, const cw_mesh_read_desc *desc, cw_mesh 
 cw_status cw_parts_read(const char *path, const cw_mesh_read_desc *desc, cw_part **parts,
                         size_t *count, cw_mesh_file *file, cw_error *err)
 {
+    path = cwi_input_name(path, desc ? desc->stored : NULL);
     CWI_REQUIRE(err, path, parts, count);
     CWI_REQUIRE_VERSION(err, desc, 0);
     cwi_mesh_input in = {.desc = resolve_desc(desc), .pictures.is_wanted = true};

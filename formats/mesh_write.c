@@ -207,6 +207,12 @@ static unsigned keeps_of(const cwi_format_driver *f, const cw_write_desc *d)
 static cw_status open_output(const char *path, const cwi_format_driver *f,
                              const cw_write_desc *d, cwi_mesh_output *out, cw_error *err)
 {
+    if (d->sink && f->write.replaces)
+        return cwi_fail(err, CW_ERR_UNSUPPORTED,
+                        "%s is a folder of many files, which no sink takes (desc->sink)",
+                        f->name);
+    if (d->sink)
+        return cwi_byte_output_open(&out->bytes, d->sink, &out->file, err);
     return f->write.replaces
                ? cwi_outfolder_open(&out->folder, path, d->no_clobber, f->write.replaces, err)
                : cwi_outfile_open(&out->file, path, d->no_clobber, err);
@@ -222,6 +228,7 @@ static void abort_output(cwi_mesh_output *out)
     cwi_outfile_abort(&out->side);
     cwi_outfile_abort(&out->file);
     cwi_outfolder_abort(&out->folder);
+    cwi_byte_output_close(&out->bytes);
 }
 
 /* Opens the temporary of rank 0 in all processes of a team. */
@@ -290,6 +297,8 @@ static cw_status write_parts(const char *path, const cwi_parts *parts,
     if (st == CW_OK)
         st = out->folder ? cwi_outfolder_commit(&out->folder, err)
                          : cwi_outfile_commit(&out->file, err);
+    if (st == CW_OK && d->sink)
+        st = cwi_byte_output_deliver(&out->bytes, err);
     abort_output(out);
     return st;
 }
@@ -303,7 +312,7 @@ static cw_status write_by_team(const char *path, const cwi_parts *parts,
     consented = cw_team_agree(team, consented, err);
     if (consented != CW_OK)
         return consented;
-    if (f->write.shares && !d->text)
+    if (f->write.shares && !d->text && !d->sink)
         return write_shared(path, parts, f, team, d, out, err);
     const bool writes = team->rank == 0;
     cw_status st = writes ? write_parts(path, parts, f, d, NULL, out, err) : CW_OK;
@@ -319,10 +328,20 @@ static const cw_team *find_team(const cw_part *parts, size_t count)
     return team;
 }
 
+/* Returns the path of a file, or what stands for it where a sink takes the bytes. */
+static const char *path_of(const char *path, const cw_write_desc *desc, const char *otherwise)
+{
+    return path || !desc || !desc->sink ? path : otherwise;
+}
+
+static const char memory_name[] = "(memory)", default_stem[] = "mesh";
+
 cw_status cw_parts_write_with_consent(const char *path, const cw_part *parts, size_t count,
                                       const cw_write_desc *desc,
                                       const cw_write_consent *consent, cw_error *err)
 {
+    const char *shown = path_of(path, desc, memory_name);
+    path = path_of(path, desc, default_stem);
     CWI_REQUIRE(err, path);
     CWI_REQUIRE_VERSION(err, desc, 0);
     CWI_REQUIRE_ARRAY(err, parts, count);
@@ -362,7 +381,7 @@ cw_status cw_parts_write_with_consent(const char *path, const cw_part *parts, si
         st = team ? write_by_team(path, &placed, f, team, &d, consent, &out, err)
                   : write_parts(path, &placed, f, &d, consent, &out, err);
     cwi_parts_free(&placed);
-    return st == CW_OK ? CW_OK : cwi_fail_in(err, st, path);
+    return st == CW_OK ? CW_OK : cwi_fail_in(err, st, shown);
 }
 
 cw_status cw_parts_write(const char *path, const cw_part *parts, size_t count,
@@ -375,7 +394,8 @@ cw_status cw_parts_write(const char *path, const cw_part *parts, size_t count,
 cw_status cw_mesh_write(const char *path, const cw_mesh *mesh, const cw_write_desc *desc,
                         cw_error *err)
 {
-    CWI_REQUIRE(err, path, mesh);
+    const char *shown = path_of(path, desc, memory_name);
+    CWI_REQUIRE(err, shown, mesh);
     CWI_REQUIRE_VERSION(err, desc, 0);
     return cw_parts_write(path, &(cw_part){.mesh = mesh}, 1, desc, err);
 }
@@ -484,6 +504,7 @@ static void name_attributes(const cw_part *parts, size_t count, char *text, size
 cw_status cw_parts_write_loss(const char *path, const cw_part *parts, size_t count,
                               const cw_write_desc *desc, cw_write_loss *loss, cw_error *err)
 {
+    path = path_of(path, desc, memory_name);
     CWI_REQUIRE(err, path, loss);
     CWI_REQUIRE_VERSION(err, desc, 0);
     CWI_REQUIRE_ARRAY(err, parts, count);
@@ -513,6 +534,7 @@ cw_status cw_parts_write_loss(const char *path, const cw_part *parts, size_t cou
 cw_status cw_mesh_write_loss(const char *path, const cw_mesh *mesh, const cw_write_desc *desc,
                              cw_write_loss *loss, cw_error *err)
 {
+    path = path_of(path, desc, memory_name);
     CWI_REQUIRE(err, path, mesh, loss);
     CWI_REQUIRE_VERSION(err, desc, 0);
     return cw_parts_write_loss(path, &(cw_part){.mesh = mesh}, 1, desc, loss, err);
@@ -520,6 +542,7 @@ cw_status cw_mesh_write_loss(const char *path, const cw_mesh *mesh, const cw_wri
 
 cw_status cw_mesh_write_check(const char *path, const cw_write_desc *desc, cw_error *err)
 {
+    path = path_of(path, desc, memory_name);
     CWI_REQUIRE(err, path);
     CWI_REQUIRE_VERSION(err, desc, 0);
     const cw_write_desc d = desc ? *desc : (cw_write_desc){0};

@@ -155,9 +155,32 @@ static const driver *find_store(const char *path, const cw_read_desc *desc)
     return found;
 }
 
+/* Refuses one of the many files of a store, such as Zarr's. */
+static cw_status refuse_store(const driver *r, cw_error *err)
+{
+    return r && r->volume.is_store
+               ? cwi_fail(err, CW_ERR_UNSUPPORTED,
+                          "this is one of the many files of a folder (%s): the others are "
+                          "missing, and data without a path have no files beside them",
+                          r->name)
+               : CW_OK;
+}
+
+/* Opens a file that has no path. */
+static cw_status open_stored(opened *o, const cw_read_desc *desc, cw_error *err)
+{
+    cw_status st = cwi_input_open_stored(&o->in, desc->stored, err);
+    o->in.array = desc->array;
+    if (st == CW_OK && !desc->raw)
+        st = find_reader(o, desc, err);
+    return st == CW_OK ? refuse_store(o->reader, err) : st;
+}
+
 static cw_status open_path(opened *o, const char *path, const cw_read_desc *desc, cw_error *err)
 {
     *o = (opened){.in = {.allow_external = desc->allow_external}};
+    if (desc->stored)
+        return open_stored(o, desc, err);
     o->reader = find_store(path, desc);
     if (o->reader) {
         cw_status st = cwi_input_open_folder(&o->in, path, err);
@@ -288,6 +311,7 @@ static cw_status read_opened(opened *o, const cw_read_desc *desc, cw_volume *vol
 cw_status cw_volume_read(const char *path, const cw_read_desc *desc, cw_volume *volume,
                          const char **format, cw_error *err)
 {
+    path = cwi_input_name(path, desc ? desc->stored : NULL);
     CWI_REQUIRE(err, path, volume);
     CWI_REQUIRE_VERSION(err, desc, 0);
     const cw_read_desc d = desc ? *desc : (cw_read_desc){0};
@@ -381,6 +405,7 @@ cw_status cw_volume_visit(const char *path, const cw_read_desc *desc, size_t com
                           size_t step, const cw_slice_visitor *visitor, const char **format,
                           cw_error *err)
 {
+    path = cwi_input_name(path, desc ? desc->stored : NULL);
     CWI_REQUIRE(err, path, visitor);
     CWI_REQUIRE_VERSION(err, desc, 0);
     const cw_read_desc d = desc ? *desc : (cw_read_desc){0};
@@ -407,6 +432,7 @@ static bool is_of_slices(const opened *o)
 cw_status cw_arrays_list(const char *path, const cw_read_desc *desc, cw_array **arrays,
                          size_t *count, cw_error *err)
 {
+    path = cwi_input_name(path, desc ? desc->stored : NULL);
     CWI_REQUIRE(err, path, arrays, count);
     CWI_REQUIRE_VERSION(err, desc, 0);
     cw_read_desc d = desc ? *desc : (cw_read_desc){0};
@@ -443,6 +469,7 @@ void cw_arrays_free(cw_array *arrays)
 cw_status cw_levels_list(const char *path, const cw_read_desc *desc, cw_level **levels,
                          size_t *count, cw_error *err)
 {
+    path = cwi_input_name(path, desc ? desc->stored : NULL);
     CWI_REQUIRE(err, path, levels, count);
     CWI_REQUIRE_VERSION(err, desc, 0);
     const cw_read_desc d = desc ? *desc : (cw_read_desc){0};
@@ -464,6 +491,7 @@ void cw_levels_free(cw_level *levels)
 cw_status cw_series_list(const char *path, const cw_read_desc *desc, cw_series **series,
                          size_t *count, cw_error *err)
 {
+    path = cwi_input_name(path, desc ? desc->stored : NULL);
     CWI_REQUIRE(err, path, series, count);
     CWI_REQUIRE_VERSION(err, desc, 0);
     const cw_read_desc defaults = {0};
@@ -672,6 +700,8 @@ cw_status cw_steps_list(const char *const *paths, size_t path_count, const cw_re
     cw_status st = CW_OK;
     *files = NULL;
     *count = 0;
+    if (d.stored)
+        return CW_OK;
     if (several || (!d.raw && pattern))
         st = list_paths(paths, path_count, &d, &names, err);
     else if (!d.raw && !d.reader && cwi_is_folder(paths[0]) && !find_store(paths[0], &d))

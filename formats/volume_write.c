@@ -1,5 +1,6 @@
 /* Writes a volume: finds the writer, and gives it a file that appears when it is complete. */
 #include "core/base/status.h"
+#include "core/files/stored_file.h"
 #include "core/volume/volume.h"
 #include "formats/bytes/file_pattern.h"
 #include "formats/format_registry.h"
@@ -79,25 +80,33 @@ static cw_status write_file(const char *path, const driver *f, const cw_write_de
                             cwi_save *save, cw_error *err)
 {
     char name[80];
+    cwi_byte_output output = {.fd = -1};
     make_name(path, desc->name, name);
     save->name = name;
     save->gzip = cwi_has_extension(path, ".gz");
     save->progress = &desc->progress;
     save->labels = desc->labels && desc->labels->count ? desc->labels : NULL;
-    cw_status st = cwi_outfile_open(&save->file, path, desc->no_clobber, err);
+    cw_status st = desc->sink ? cwi_byte_output_open(&output, desc->sink, &save->file, err)
+                              : cwi_outfile_open(&save->file, path, desc->no_clobber, err);
     if (st == CW_OK)
         st = f->save.save(save, err);
     if (st == CW_OK)
         st = cwi_progress(save->progress, "writing", 1, err);
     if (st == CW_OK)
         st = cwi_outfile_commit(&save->file, err);
+    if (st == CW_OK && desc->sink)
+        st = cwi_byte_output_deliver(&output, err);
     cwi_outfile_abort(&save->file);
+    cwi_byte_output_close(&output);
     return st;
 }
 
 cw_status cw_volume_write(const char *path, const cw_volume *volume, const cw_write_desc *desc,
                           cw_error *err)
 {
+    const bool has_path = path || !desc || !desc->sink;
+    const char *shown = has_path ? path : "(memory)";
+    path = has_path ? path : "volume";
     CWI_REQUIRE(err, path, volume);
     CWI_REQUIRE_VERSION(err, desc, 0);
     const cw_write_desc defaults = {0};
@@ -119,5 +128,5 @@ cw_status cw_volume_write(const char *path, const cw_volume *volume, const cw_wr
         st = check_scaling(f, &v, err);
     if (st == CW_OK)
         st = write_file(path, f, desc, &save, err);
-    return st == CW_OK ? CW_OK : cwi_fail_in(err, st, path);
+    return st == CW_OK ? CW_OK : cwi_fail_in(err, st, shown);
 }

@@ -77,4 +77,34 @@ code=0
 render_to_png missing.nrrd none.png 2>error || code=$?
 [ $code = 3 ] && grep -q 'missing.nrrd' error || fail "a missing file gives exit code $code"
 [ ! -e none.png ] || fail "a picture of a missing file"
-echo "five examples were built against the installed library, and they work"
+# Bytes in memory and streams are those of files, in sanitized programs too where the compiler has them.
+serve() { "$1"serve_upload scan.nrrd <sphere.nrrd >served.glb 2>served || fail "$(cat served)"; }
+stream() { "$1"stream_through 0.2 ply <sphere.nrrd >through.ply 2>through || fail "$(cat through)"; }
+cubewright extract sphere.nrrd --iso 0.2 -o file.ply --name surface -q
+sanitize='-fsanitize=address,undefined -fno-sanitize-recover=undefined'
+echo 'int main(void) { return 0; }' >tiny.c
+places=$folder/build/
+if "$cc" $sanitize tiny.c -o tiny 2>/dev/null && ./tiny 2>/dev/null; then
+    cmake -S "$here/examples" -B sanitized -G "$generator" -DCMAKE_PREFIX_PATH="$folder/usr" \
+        -DCMAKE_C_COMPILER="$cc" -DCMAKE_C_FLAGS="$sanitize" >configured 2>&1 || { cat configured; exit 1; }
+    cmake --build sanitized --target serve_upload stream_through >built 2>&1 || { cat built; exit 1; }
+    places="$places $folder/sanitized/"
+fi
+for place in $places; do
+    serve "$place"
+    closed served.glb
+    grep -q "^200: $(wc -c <served.glb) bytes for $(wc -c <sphere.nrrd)$" served || fail "$(cat served)"
+    stream "$place"
+    cmp through.ply file.ply
+    grep -q "^Content-Length: $(wc -c <file.ply)$" through || fail "$(cat through)"
+    for bytes in 0 20 2000; do # uploads that break off
+        code=0
+        head -c $bytes sphere.nrrd | "$place"serve_upload scan.nrrd >none 2>error || code=$?
+        [ $code = 3 ] && [ ! -s none ] && grep -q '^422: scan.nrrd: ' error || fail "$bytes bytes: $code"
+    done
+    code=0
+    "$place"stream_through 0.2 stl <sphere.nrrd >/dev/full 2>error || code=$?
+    [ $code = 6 ] && grep -q "(memory): the receiver is gone" error || fail "a full disk gives exit code $code"
+done
+
+echo "seven examples were built against the installed library, and they work"

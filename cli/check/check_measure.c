@@ -3,6 +3,7 @@
 #include "cli/check/check_run.h"
 
 #include "cli/framework/console.h"
+#include "cli/framework/standard_streams.h"
 #include "cli/inputs/extract_surface.h"
 #include "core/base/memory.h"
 #include "core/base/status.h"
@@ -11,7 +12,6 @@
 
 #include <math.h>
 #include <stdlib.h>
-#include <sys/stat.h>
 
 /* Between the middles of two boxes, as a share of the diagonal: then a mesh was moved. */
 static const double FAR_APART = 0.05;
@@ -282,8 +282,8 @@ static cw_status measure_print(cli_check_run *s, cw_error *err)
 /* Returns the bytes of a file; 0: it is none that can be told. */
 static size_t find_file_bytes(const char *path)
 {
-    struct stat info;
-    return stat(path, &info) == 0 && S_ISREG(info.st_mode) ? (size_t)info.st_size : 0;
+    double bytes;
+    return cli_find_input_size(path, &bytes) ? (size_t)bytes : 0;
 }
 
 /* Without triangles there is nothing to measure from or to: the verdict says so. */

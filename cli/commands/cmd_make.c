@@ -1,6 +1,7 @@
 /* The command make: samples an analytic field or a hard case and writes the volume. */
 #include "cli/commands/command_rows.h"
 #include "cli/framework/console.h"
+#include "cli/framework/standard_streams.h"
 #include "cli/inputs/synthetic_input.h"
 #include "core/base/status.h"
 
@@ -12,7 +13,7 @@
 
 typedef struct make_args {
     cli_common common;
-    const char *output;
+    const char *output, *format;
     cli_sizes dims;
     int type;
     cli_number noise;
@@ -25,10 +26,13 @@ typedef struct make_args {
 static const make_args defaults = {.type = CW_F32, .dims = {.count = 3, .n = {64, 64, 64}}};
 
 static const cli_option options[] = {
-    {"output", 'o', CLI_TEXT, "FILE", "Volume to write: .nrrd, .nii, .nii.gz or .mha",
+    {"output", 'o', CLI_TEXT, "FILE",
+     "Volume to write: .nrrd, .nii, .nii.gz or .mha; - is the standard output (with --format)",
      offsetof(make_args, output), CLI_VALUES_VOLUME_OUTPUT},
     {"list", 'l', CLI_FLAG, NULL, "List the fields and their isovalues",
      offsetof(make_args, list)},
+    {"format", 0, CLI_TEXT, "NAME", "Format to write; names as in 'formats' (by extension)",
+     offsetof(make_args, format)},
     {"no-clobber", 0, CLI_FLAG, NULL, "Fail if the output exists (off: replace it)",
      offsetof(make_args, no_clobber)},
     CLI_HEADED("Samples"),
@@ -161,7 +165,10 @@ static cw_status make_field(const make_args *args, const cli_made_field *s, cw_e
     if (st != CW_OK)
         return st;
     cli_end_step("make", &start);
-    const cw_write_desc write = {.no_clobber = args->no_clobber,
+    const cw_write_desc write = {.format = args->format,
+                                 .no_clobber = args->no_clobber,
+                                 .name = cli_is_standard(args->output) ? s->name : NULL,
+                                 .sink = cli_output_sink(args->output),
                                  .progress = cli_progress(mega_voxels(args), "Mvoxel")};
     st = cw_volume_write(args->output, &volume, &write, err);
     if (st == CW_OK)

@@ -24,7 +24,8 @@ typedef struct cli_mesh_args {
 #define CLI_MESH_OUTPUT(about)                                                                 \
     {                                                                                          \
         "output", 'o', CLI_TEXT, "FILE",                                                       \
-            "Mesh to write, in the format of its extension; may hold {stem}" about,            \
+            "Mesh to write, in the format of its extension; - is the standard output (with "   \
+            "--format); may hold {stem}" about,                                                \
             offsetof(cli_mesh_args, output), CLI_VALUES_MESH_OUTPUT                            \
     }
 #define CLI_MESH_MERGE                                                                         \

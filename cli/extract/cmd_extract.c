@@ -28,7 +28,8 @@ static const cli_extract_args defaults = {.compress.kind = -1,
 
 static const cli_option options[] = {
     {"output", 'o', CLI_TEXT, "FILE",
-     "Mesh to write, in the format of its extension; may hold {level}, {step}, {stem}, {parent}, of "
+     "Mesh to write, in the format of its extension; - is the standard output (with --format); may "
+     "hold {level}, {step}, {stem}, {parent}, of "
      "--lod {lod}, and of labels {label} and {name}",
      offsetof(cli_extract_args, output), CLI_VALUES_MESH_OUTPUT},
     {"iso", 'i', CLI_LEVELS, "V[,V...]",

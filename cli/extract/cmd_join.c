@@ -15,7 +15,8 @@ typedef struct join_args {
 static const join_args defaults = {.check = true};
 
 static const cli_option options[] = {
-    {"output", 'o', CLI_TEXT, "FILE", "Mesh to write, in the format of its extension",
+    {"output", 'o', CLI_TEXT, "FILE",
+     "Mesh to write, in the format of its extension; - is the standard output (with --format)",
      offsetof(join_args, output), CLI_VALUES_MESH_OUTPUT},
     {"format", 0, CLI_TEXT, "NAME", "Format to write; names as in 'formats' (by extension)",
      offsetof(join_args, format), CLI_VALUES_MESH_WRITER},
@@ -47,7 +48,7 @@ static cw_status run_join(void *p, cw_error *err)
                                 .name = args->name,
                                 .local = args->local,
                                 .no_clobber = args->no_clobber};
-    cw_status st = cw_mesh_write_check(args->output, &desc, err);
+    cw_status st = cli_check_writable(args->output, &desc, err);
     if (st == CW_OK)
         st = cli_read_manifest(folder, &m, err);
     if (st == CW_OK)

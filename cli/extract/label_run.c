@@ -4,6 +4,7 @@
 #include "cli/extract/label_run.h"
 
 #include "cli/framework/console.h"
+#include "cli/framework/standard_streams.h"
 #include "cli/inputs/extract_surface.h"
 #include "cli/inputs/label_scene.h"
 #include "cli/inputs/volume_prepare.h"
@@ -451,7 +452,7 @@ static void tell_overflow(void *user, size_t bytes)
 /* Lets arrays beyond --memory go to files beside the output. Where none can be made, memory has to do. */
 static void begin_overflow(const cli_label_run *r)
 {
-    char *path = cwi_strdup(r->args->output);
+    char *path = cwi_strdup(cli_temporary_beside(r->args->output));
     char *brace = path ? strchr(path, '{') : NULL; /* of a name that is not known yet */
     if (brace)
         *brace = '\0';

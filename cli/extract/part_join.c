@@ -4,6 +4,7 @@
 
 #include "cli/extract/small_components.h"
 #include "cli/framework/console.h"
+#include "cli/framework/standard_streams.h"
 #include "core/base/memory.h"
 #include "core/base/status.h"
 
@@ -44,7 +45,7 @@ static cw_status drop_components(const cli_joined *j, const cw_mesh_spool *whole
                                  cw_mesh_spool **kept, cw_error *err)
 {
     cw_drop_counts counts;
-    cw_status st = cw_mesh_spool_new(j->output, kept, err);
+    cw_status st = cw_mesh_spool_new(cli_temporary_beside(j->output), kept, err);
     return st == CW_OK ? cli_drop_small_components(j->output, whole, j->manifest->least_mm3,
                                                    cwi_memory_left(), cw_mesh_spool_sink(*kept),
                                                    &counts, err)
@@ -82,10 +83,13 @@ static cw_status write_file(const cli_joined *j, const cw_mesh_spool *spool, cw_
     const cli_manifest *m = j->manifest;
     const cw_mesh *frame = cw_mesh_spool_frame(spool);
     const cw_part part = {.mesh = frame, .spool = spool};
-    struct stat info = {0};
+    double bytes;
     for (size_t n = 0; n < m->line_count; n++)
         lines[n] = (cw_provenance){m->lines[n][0], m->lines[n][1]};
     cw_write_desc d = *j->desc;
+    d.sink = cli_output_sink(j->output);
+    if (d.sink && !d.name)
+        d.name = "mesh"; /* there is no stem of a path */
     d.provenance = lines;
     d.provenance_count = m->line_count;
     d.progress = cli_progress((double)frame->triangle_count / 1e6, "Mtriangle");
@@ -95,8 +99,8 @@ static cw_status write_file(const cli_joined *j, const cw_mesh_spool *spool, cw_
     cli_result("%s: %s triangles, %s vertices, from %s%s", j->output,
                cli_count(frame->triangle_count), cli_count(frame->vertex_count), j->from,
                j->check ? "; checked" : "");
-    if (stat(j->output, &info) == 0)
-        cli_result("; %s", cli_bytes((double)info.st_size));
+    if (cli_find_output_size(j->output, &bytes))
+        cli_result("; %s", cli_bytes(bytes));
     cli_result("; %.2f s\n", cli_seconds() - j->start);
     return CW_OK;
 }
@@ -130,7 +134,7 @@ cw_status cli_join_parts(const char *folder, const cli_joined *j, cw_error *err)
 {
     cw_mesh_spool *spool = NULL;
     cw_part_counts sides = {0};
-    cw_status st = cw_mesh_spool_new(j->output, &spool, err);
+    cw_status st = cw_mesh_spool_new(cli_temporary_beside(j->output), &spool, err);
     if (st == CW_OK)
         st = cli_append_parts(folder, j->manifest, 0, j->manifest->parts, spool, &sides, err);
     if (st == CW_OK)

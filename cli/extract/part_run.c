@@ -7,6 +7,7 @@
 #include "cli/extract/stream_run.h"
 #include "cli/framework/console.h"
 #include "cli/framework/quantity.h"
+#include "cli/framework/standard_streams.h"
 #include "core/base/memory.h"
 #include "core/base/status.h"
 #include "core/base/thread_pool.h"
@@ -71,7 +72,7 @@ static cw_status check_job(const cli_extract_args *args, const char *how, cw_err
             "its number, which 'cubewright extract' says without %s",
             how, cli_level_text(args->iso.level[0], args->iso.value[0]), how);
     const cw_write_desc desc = cli_extract_write_desc(args);
-    return args->output ? cw_mesh_write_check(args->output, &desc, err) : CW_OK;
+    return args->output ? cli_check_writable(args->output, &desc, err) : CW_OK;
 }
 
 static cw_status check_args(const cli_extract_args *args, cw_error *err)
@@ -115,7 +116,7 @@ static bool is_made(const part_run *p)
 static cw_status fill_spool(part_run *p, const char *path, cw_error *err)
 {
     const cw_slice_visitor visitor = {extract_slices, p};
-    cw_status st = cw_mesh_spool_new(path, &p->spool, err);
+    cw_status st = cw_mesh_spool_new(cli_temporary_beside(path), &p->spool, err);
     return st == CW_OK
                ? cli_visit_slices(&p->run.input.volume, &p->run.args->input, &visitor, err)
                : st;
@@ -234,7 +235,7 @@ static cw_status make_kept_parts(part_run *p, const cw_team *team, cw_error *err
     for (p->part = first; p->part < end && st == CW_OK; p->part++)
         st = make_part(p, err);
     if (st == CW_OK)
-        st = cw_mesh_spool_new(p->run.args->output, &p->spool, err);
+        st = cw_mesh_spool_new(cli_temporary_beside(p->run.args->output), &p->spool, err);
     p->counts = (cw_part_counts){0};
     return st == CW_OK ? cli_append_parts(p->folder, &p->manifest, first, end, p->spool,
                                           &p->counts, err)

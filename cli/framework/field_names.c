@@ -29,6 +29,7 @@ static const struct {
     {"desc->array", "--array"},
     {"desc->points", "--points"},
     {"desc->raw", "--raw"},
+    {"desc->sink", "-o -"},
     {"desc->allow_external", "--allow-external"},
     {"desc->truncated", "'repair --truncated'"},
     {"desc->snap = 0.5", "--snap 0.5"},

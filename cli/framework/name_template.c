@@ -116,6 +116,8 @@ static const char *last_name(const char *path)
 
 char *cli_stem(const char *path)
 {
+    if (strcmp(path, "-") == 0)
+        return strdup("stdin");
     const char *name = last_name(path);
     size_t length = (size_t)(end_of_path(path) - name);
     if (length > 3 && strncasecmp(name + length - 3, ".gz", 3) == 0)

@@ -19,7 +19,7 @@ typedef struct cli_part {
 CW_NODISCARD cw_status cli_fill_template(const char *text, cli_part *parts, size_t part_count,
                                          char **out, cw_error *err);
 
-/* "head" of "scans/head.nii.gz": no folder, no .gz and no extension. Free it with free(); NULL
+/* "head" of "scans/head.nii.gz": no folder, no .gz and no extension; "stdin" of "-". Free it with free(); NULL
  * when there is no memory. */
 char *cli_stem(const char *path);
 

@@ -134,7 +134,7 @@ static bool is_large(const info_args *args, const cw_read_desc *desc)
 static cw_status find_ranges(const info_args *args, const char *name, double (*ranges)[2],
                              cw_error *err)
 {
-    cw_read_desc desc = cli_read_desc(&args->input);
+    cw_read_desc desc = cli_read_desc(args->common.inputs[0], &args->input);
     cw_volume all, one;
     desc.array = name;
     if (is_large(args, &desc)) {
@@ -158,7 +158,7 @@ static cw_status find_ranges(const info_args *args, const char *name, double (*r
 
 static cw_status find_arrays(const info_args *args, cli_info_facts *f, cw_error *err)
 {
-    const cw_read_desc desc = cli_read_desc(&args->input);
+    const cw_read_desc desc = cli_read_desc(args->common.inputs[0], &args->input);
     if (args->input.raw)
         return CW_OK;
     cw_status st =
@@ -231,7 +231,7 @@ static cw_status find_facts(const info_args *args, cli_info_facts *f, cw_error *
     if (st == CW_OK)
         st = find_arrays(args, f, err);
     if (st == CW_OK) {
-        const cw_read_desc desc = cli_read_desc(&args->input);
+        const cw_read_desc desc = cli_read_desc(args->common.inputs[0], &args->input);
         st = args->input.raw ? CW_OK
                              : cli_find_scales(args->common.inputs[0], &desc, &f->scales, err);
     }
@@ -353,7 +353,7 @@ static cw_status print_files(const info_args *args, char *const *files, size_t c
 static cw_status list_steps(const info_args *args, bool *listed, cw_error *err)
 {
     const cw_raw_layout raw = {0}; /* only whether there is one counts here */
-    cw_read_desc desc = cli_read_desc(&args->input);
+    cw_read_desc desc = cli_read_desc(args->common.inputs[0], &args->input);
     char **files;
     size_t count;
     desc.raw = args->input.raw ? &raw : NULL;
@@ -377,7 +377,7 @@ static cw_status list_series(const info_args *args, cli_info_facts *f, bool *lis
 {
     const char *path = args->common.inputs[0];
     cli_volume notes = {.path = path, .is_quiet = true};
-    cw_read_desc desc = cli_read_desc(&args->input);
+    cw_read_desc desc = cli_read_desc(args->common.inputs[0], &args->input);
     cw_series *series;
     size_t count;
     if (args->input.raw)

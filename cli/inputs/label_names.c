@@ -4,6 +4,7 @@
 
 #include "cli/framework/console.h"
 #include "cli/framework/field_names.h"
+#include "cli/framework/standard_streams.h"
 #include "core/base/memory.h"
 #include "core/base/status.h"
 #include "core/volume/label_table.h"
@@ -33,6 +34,8 @@ static cw_status read_stated(const char *path, cli_label_names *names, cw_error 
 static cw_status read_beside(const cli_volume *volume, cli_label_names *names, cw_error *err)
 {
     cw_error why;
+    if (cli_is_standard(volume->path)) /* nothing is beside it */
+        return CW_OK;
     cw_status st = cw_label_table_beside(volume->path, &names->path, err);
     if (st != CW_OK || !names->path)
         return st;

@@ -4,6 +4,7 @@
 
 #include "cli/framework/console.h"
 #include "cli/framework/quantity.h"
+#include "cli/framework/standard_streams.h"
 #include "core/base/status.h"
 
 #include <cubewright/atlas.h>
@@ -110,12 +111,6 @@ static void say_what_was_found(const cli_mesh *m)
     say_left_out(m, m->file.others, m->file.other_triangles, "of type 'other'");
 }
 
-static double file_bytes(const char *path)
-{
-    struct stat info;
-    return stat(path, &info) == 0 ? (double)info.st_size : 0;
-}
-
 bool cli_is_textured(const cli_mesh *m)
 {
     bool found = cw_mesh_attribute_find(&m->mesh, CW_TEXTURE_COORDINATES);
@@ -143,7 +138,10 @@ static cw_status read_pictures(const char *path, const cw_mesh_read_desc *desc, 
 static cw_mesh_read_desc make_desc(const char *path, const char *reader, const cli_input *input,
                                    bool reference)
 {
+    double bytes;
+    cli_find_input_size(path, &bytes);
     cw_mesh_read_desc desc = {
+        .stored = cli_stored_input(path),
         .reader = reader,
         .allow_external = input->allow_external,
         .truncated = input->truncated,
@@ -155,7 +153,7 @@ static cw_mesh_read_desc make_desc(const char *path, const char *reader, const c
     };
     if (reference)
         desc.claim.rule = CW_CLAIM_FILL;
-    desc.progress = cli_progress(file_bytes(path) / 1e6, "MB");
+    desc.progress = cli_progress(bytes / 1e6, "MB");
     return desc;
 }
 
@@ -250,7 +248,7 @@ void cli_json_mesh_file(cli_json *j, const char *key, const cli_mesh *mesh)
         cli_json_text(j, "up", "y");
     if (*mesh->file.left_out)
         cli_json_text(j, "left_out", mesh->file.left_out);
-    if (SHA256File(mesh->path, sum))
+    if (SHA256File(cli_bytes_path(mesh->path), sum))
         cli_json_text(j, "sha256", sum);
     cli_json_close(j, '}');
 }

@@ -95,7 +95,7 @@ static cw_status choose_steps(cli_series *series, const cli_steps *requested, si
 static cw_status take_times(cli_series *series, const char *path, const cli_input *input,
                             cw_error *err)
 {
-    const cw_read_desc desc = cli_read_desc(input);
+    const cw_read_desc desc = cli_read_desc(path, input);
     cw_pvd_entry *entries;
     size_t count;
     cw_status st = cw_pvd_read(path, &desc, &entries, &count, err);
@@ -160,7 +160,7 @@ cw_status cli_find_series(cli_series *series, const cli_common *common, const cl
                           const cli_steps *steps, cw_error *err)
 {
     const char *const *paths = common->inputs;
-    cw_read_desc desc = cli_read_desc(input);
+    cw_read_desc desc = cli_read_desc(common->input_count == 1 ? paths[0] : NULL, input);
     const cw_raw_layout raw = {0}; /* only whether there is one counts here */
     desc.raw = input->raw ? &raw : NULL;
     cw_status st = cw_steps_list(paths, common->input_count, &desc, &series->files.path,

@@ -4,6 +4,7 @@
 
 #include "cli/framework/console.h"
 #include "cli/framework/field_names.h"
+#include "cli/framework/standard_streams.h"
 #include "core/volume/volume.h"
 
 #include <math.h>
@@ -202,7 +203,7 @@ void cli_json_input(cli_json *j, const char *key, const cli_volume *volume)
         cli_json_numbers(j, NULL, v->affine[r], 4);
     cli_json_close(j, ']');
     cli_json_notes(j, volume);
-    if (SHA256File(volume->path, sum))
+    if (SHA256File(cli_bytes_path(volume->path), sum))
         cli_json_text(j, "sha256", sum);
     cli_json_close(j, '}');
 }

@@ -7,6 +7,7 @@
 
 #include "cli/framework/console.h"
 #include "cli/framework/quantity.h"
+#include "cli/framework/standard_streams.h"
 #include "core/base/status.h"
 #include "core/base/text.h"
 #include "core/geometry/box.h"
@@ -395,9 +396,10 @@ cli_input cli_source_input(const cli_input *input)
     return source;
 }
 
-cw_read_desc cli_read_desc(const cli_input *input)
+cw_read_desc cli_read_desc(const char *path, const cli_input *input)
 {
-    cw_read_desc desc = {.reader = input->reader,
+    cw_read_desc desc = {.stored = cli_stored_input(path),
+                         .reader = input->reader,
                          .allow_external = input->allow_external,
                          .series = input->series,
                          .array = input->array.name[0] ? input->array.name : NULL,
@@ -435,7 +437,7 @@ cw_status cli_read_shape(const char *path, const cli_input *input, cw_volume *sh
                          cw_error *err)
 {
     cw_raw_layout raw;
-    cw_read_desc desc = cli_read_desc(input);
+    cw_read_desc desc = cli_read_desc(path, input);
     cw_status st = set_raw(input, &raw, &desc, err);
     return st == CW_OK ? read_shape(path, &desc, shape, NULL, err) : st;
 }
@@ -444,7 +446,7 @@ cw_status cli_read_volume(const char *path, const cli_input *input, bool header_
                           cli_volume *volume, cw_error *err)
 {
     cw_raw_layout raw;
-    cw_read_desc desc = cli_read_desc(input);
+    cw_read_desc desc = cli_read_desc(path, input);
     memset(volume, 0, sizeof *volume);
     volume->path = path;
     volume->is_quiet = input->is_quiet;
@@ -489,7 +491,7 @@ static cw_status visit_volume(const void *user, const cw_slice_visitor *visitor,
     const cli_volume *volume = ((const slice_visit *)user)->volume;
     const cli_input *input = ((const slice_visit *)user)->input;
     cw_raw_layout raw;
-    cw_read_desc desc = cli_read_desc(input);
+    cw_read_desc desc = cli_read_desc(volume->path, input);
     cw_box box;
     cw_status st = set_raw(input, &raw, &desc, err);
     if (st == CW_OK && input->crop.given) {
@@ -515,7 +517,7 @@ cw_status cli_read_whole(const cli_volume *part, const cli_input *input, cli_vol
                          cw_error *err)
 {
     cw_raw_layout raw;
-    cw_read_desc desc = cli_read_desc(input);
+    cw_read_desc desc = cli_read_desc(part->path, input);
     *whole = (cli_volume){.path = part->path, .format = part->format};
     whole->memory_left = desc.max_bytes;
     cw_status st = set_raw(input, &raw, &desc, err);

@@ -315,7 +315,7 @@ cw_claim cli_claim_of(const cli_claim *claim);
 cli_input cli_source_input(const cli_input *input);
 
 /* Returns the library's settings for reading, from the options. */
-cw_read_desc cli_read_desc(const cli_input *input);
+cw_read_desc cli_read_desc(const char *path, const cli_input *input);
 
 /* Reads the header, says what was found, then reads the voxels (unless header_only). Errors
  * name the file. Free with cli_free_volume(). */

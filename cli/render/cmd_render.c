@@ -14,7 +14,7 @@ static const render_args defaults = {.scene = CLI_SCENE_DEFAULTS,
 
 static const cli_option options[] = {
     {"output", 'o', CLI_TEXT, "FILE",
-     "Picture to write, a .png file; may hold {turn}, {step} or {step:04d}, {stem} and {parent}",
+     "Picture to write, a .png file; - is the standard output; may hold {turn}, {step} or {step:04d}, {stem} and {parent}",
      offsetof(render_args, output), CLI_VALUES_PNG},
 #include "cli/render/options_what.inc"
     {"size", 0, CLI_SIZES, "WxH", "Size of the picture in pixels (1280x720)",

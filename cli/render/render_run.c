@@ -6,6 +6,7 @@
 #include "cli/framework/console.h"
 #include "cli/framework/name_template.h"
 #include "cli/framework/quantity.h"
+#include "cli/framework/standard_streams.h"
 #include "cli/inputs/extract_surface.h"
 #include "cli/inputs/mesh_input.h"
 #include "cli/render/compare_options.h"
@@ -44,7 +45,7 @@ static cw_status check_isolines(const render_args *args, cw_error *err)
 cw_status cli_check_pictures(const render_args *args, cw_error *err)
 {
     const char *dot = args->output ? strrchr(args->output, '.') : NULL;
-    if (!dot || strcmp(dot, ".png") != 0)
+    if (!cli_is_standard(args->output) && (!dot || strcmp(dot, ".png") != 0))
         return cwi_fail(err, CW_ERR_ARGUMENT, "%s: render writes .png", args->output);
     if (args->size.count != 2)
         return cwi_fail(err, CW_ERR_ARGUMENT, "--size takes two numbers, such as 1280x720");
@@ -486,6 +487,19 @@ static cw_status add_slices(cli_pictures *p, cw_image *image, cw_error *err)
     return st;
 }
 
+static cw_status write_picture(const char *path, const cw_image *image, cw_error *err)
+{
+    uint8_t *bytes;
+    size_t size;
+    if (!cli_is_standard(path))
+        return cw_image_write(path, image, err);
+    cw_status st = cw_image_encode(image, true, &bytes, &size, err);
+    if (st == CW_OK)
+        st = cli_write_standard(bytes, size, err);
+    cw_bytes_free(bytes);
+    return st;
+}
+
 static cw_status take_picture(cli_pictures *p, size_t turn, cli_shot *shot, cw_error *err)
 {
     uint8_t background[2][4];
@@ -510,7 +524,7 @@ static cw_status take_picture(cli_pictures *p, size_t turn, cli_shot *shot, cw_e
     if (st == CW_OK)
         cli_end_step("draw", &start);
     if (st == CW_OK)
-        st = cw_image_write(shot->path, &image, err);
+        st = write_picture(shot->path, &image, err);
     cw_image_free(&image);
     if (st != CW_OK)
         return st;

@@ -5,6 +5,7 @@
 
 #include "cli/framework/name_template.h"
 #include "cli/framework/quantity.h"
+#include "cli/framework/standard_streams.h"
 #include "core/base/memory.h"
 #include "core/base/status.h"
 
@@ -43,7 +44,8 @@ cw_status cli_check_output(const char *output, const char *const *inputs, size_t
                            cw_error *err)
 {
     for (size_t i = 0; i < input_count; i++)
-        if (same_file(output, inputs[i]))
+        if (!cli_is_standard(output) && !cli_is_standard(inputs[i]) &&
+            same_file(output, inputs[i]))
             return cwi_fail(err, CW_ERR_OUTPUT,
                             "%s: is the input; inputs are never overwritten, give another -o",
                             output);
@@ -82,6 +84,10 @@ static const char *end_of_name(const char *text)
 static cw_status ask_for(const char *what, const char *text, const char *why, cw_error *err)
 {
     const char *end = end_of_name(text), *width = strcmp(what, "step") == 0 ? ":04d" : "";
+    if (cli_is_standard(text))
+        return cwi_fail(err, CW_ERR_ARGUMENT,
+                        "%s: standard output takes one file; give -o a name that holds {%s}",
+                        why, what);
     return cwi_fail(err, CW_ERR_ARGUMENT,
                     "%s: the output must hold {%s}, as in '%.*s-{%s%s}%s'", why, what,
                     (int)(end - text), text, what, width, end);
@@ -253,6 +259,10 @@ cw_status cli_name_lod_outputs(cli_outputs *outputs, const char *text, const cha
                               {.name = "parent", .value = parent}};
     if (st == CW_OK && !parent)
         st = cwi_fail_memory(err);
+    if (st == CW_OK && cli_is_standard(text))
+        st = cwi_fail(err, CW_ERR_ARGUMENT,
+                      "--lod makes several files, and standard output takes one; give -o a "
+                      "name");
     if (st == CW_OK) /* only to see whether there is a {lod} in it */
         st = cli_fill_template(text, parts, FIELDS, &plain, err);
     const bool apart = parts[LOD].used;
@@ -316,6 +326,13 @@ static cw_status check_all_apart(const cli_outputs *outputs, cw_error *err)
     return st;
 }
 
+cw_status cli_check_writable(const char *path, const cw_write_desc *desc, cw_error *err)
+{
+    cw_write_desc d = *desc;
+    d.sink = cli_output_sink(path);
+    return cw_mesh_write_check(path, &d, err);
+}
+
 cw_status cli_check_outputs(const cli_outputs *outputs, const char *const *inputs,
                             size_t input_count, const cw_write_desc *desc, cw_error *err)
 {
@@ -325,6 +342,6 @@ cw_status cli_check_outputs(const cli_outputs *outputs, const char *const *input
     if (st == CW_OK)
         st = check_all_apart(outputs, err);
     for (size_t n = 0; n < outputs->count && st == CW_OK; n++)
-        st = cw_mesh_write_check(outputs->path[n], desc, err);
+        st = cli_check_writable(outputs->path[n], desc, err);
     return st;
 }

@@ -72,6 +72,10 @@ CW_NODISCARD cw_status cli_name_output(cli_outputs *outputs, const char *text,
                                        const char *input, cw_error *err);
 void cli_free_outputs(cli_outputs *outputs);
 
+/* Checks that a mesh can be written to a path, or to standard output. Returns as cw_mesh_write_check() */
+CW_NODISCARD cw_status cli_check_writable(const char *path, const cw_write_desc *desc,
+                                          cw_error *err);
+
 /* Fails when one of them could not be written, is an input or another of them. */
 CW_NODISCARD cw_status cli_check_outputs(const cli_outputs *outputs, const char *const *inputs,
                                          size_t input_count, const cw_write_desc *desc,

@@ -5,6 +5,7 @@
 #include "cli/framework/console.h"
 #include "cli/framework/quantity.h"
 #include "cli/framework/run_config.h"
+#include "cli/framework/standard_streams.h"
 #include "cli/results/check_verdicts.h"
 #include "cli/results/compress_options.h"
 #include "cli/results/stage_facts.h"
@@ -19,7 +20,6 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 
 const struct cli_kept cli_kept[] = {
     {CW_KEEPS_PARTS, "parts"},
@@ -340,14 +340,14 @@ static void put_dropped(cli_json *j, unsigned dropped)
 
 static void put_output(cli_json *j, const cli_made *made)
 {
-    struct stat info;
-    if (!made->written || stat(made->path, &info) != 0)
+    double bytes;
+    if (!made->written)
         return;
     cli_json_open(j, NULL, '{');
     cli_json_text(j, "path", cli_shown_path(made->path));
     cli_json_count(j, "bytes",
-                   S_ISDIR(info.st_mode) ? (size_t)made->compressed.bytes
-                                         : (size_t)info.st_size);
+                   cli_find_output_size(made->path, &bytes) ? (size_t)bytes
+                                                            : (size_t)made->compressed.bytes);
     cli_json_text(j, "compression", cli_compression_name(made->compression));
     if (made->compression)
         put_compressed(j, &made->compressed);
@@ -404,9 +404,9 @@ static void put_report(FILE *out, const cli_report *r, cw_status status, const c
 cw_status cli_report_save(const char *path, const char *text, size_t size, cw_error *err)
 {
     if (strcmp(path, "-") == 0)
-        return fwrite(text, 1, size, stdout) == size
+        return fwrite(text, 1, size, stdout) == size && fflush(stdout) == 0
                    ? CW_OK
-                   : cwi_fail(err, CW_ERR_OUTPUT, "the standard output cannot be written");
+                   : cli_fail_standard(err);
     return cwi_outfile_save(path, text, size, err);
 }
 

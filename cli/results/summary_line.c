@@ -3,10 +3,10 @@
 
 #include "cli/framework/console.h"
 #include "cli/framework/quantity.h"
+#include "cli/framework/standard_streams.h"
 #include "cli/results/mesh_comparison.h"
 
 #include <math.h>
-#include <sys/stat.h>
 
 /* "1 472 302 triangles" */
 static void print_count(size_t count, const char *noun)
@@ -194,7 +194,7 @@ static void print_facts(const cli_delivery *how, const cli_made *made)
 void cli_print_summary(const cli_delivery *how, const cli_made *made, const cli_load *l,
                        size_t border_loops, double start)
 {
-    struct stat info = {0};
+    double bytes;
     if (made->written)
         cli_result("%s: ", made->path);
     else if (made->moment)
@@ -209,8 +209,9 @@ void cli_print_summary(const cli_delivery *how, const cli_made *made, const cli_
     if (how->write.animated && made->written)
         print_times(l);
     print_facts(how, made);
-    if (made->written && stat(made->path, &info) == 0)
-        cli_result("; %s", cli_bytes(S_ISDIR(info.st_mode) ? (double)made->compressed.bytes
-                                                           : (double)info.st_size));
+    if (made->written)
+        cli_result("; %s", cli_bytes(cli_find_output_size(made->path, &bytes)
+                                         ? bytes
+                                         : (double)made->compressed.bytes));
     cli_result("; %.2f s\n", cli_seconds() - start);
 }

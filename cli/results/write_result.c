@@ -3,6 +3,7 @@
 
 #include "cli/framework/console.h"
 #include "cli/framework/quantity.h"
+#include "cli/framework/standard_streams.h"
 #include "cli/results/summary_line.h"
 #include "core/base/status.h"
 #include "core/base/task_pair.h"
@@ -204,6 +205,9 @@ static void write_bytes(writing *w, const cw_write_consent *consent)
 {
     const cli_load *l = w->load;
     w->desc.compressed = &w->made->compressed;
+    w->desc.sink = cli_output_sink(w->made->path);
+    if (w->desc.sink && !w->desc.name && !l->parts->name)
+        w->desc.name = "mesh"; /* there is no stem of a path */
     cli_set_compress(w->how->compress, l->parts, l->part_count, w->how->voxel_mm, &w->desc);
     w->status = cw_parts_write_loss(w->made->path, l->parts, l->part_count, &w->desc, &w->loss,
                                     &w->error);

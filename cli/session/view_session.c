@@ -199,7 +199,7 @@ static void choose_series(view *v)
     char text[256];
     cw_series *list = NULL;
     size_t count = 0, max_count = 0;
-    const cw_read_desc desc = cli_read_desc(&v->state.args.input);
+    const cw_read_desc desc = cli_read_desc(v->document.path, &v->state.args.input);
     if (desc.series || cw_series_list(v->document.path, &desc, &list, &count, NULL) != CW_OK)
         return;
     for (size_t n = 0; n < count; n++)

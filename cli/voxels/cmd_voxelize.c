@@ -3,6 +3,7 @@
 #include "cli/voxels/cmd_voxelize.h"
 #include "cli/framework/console.h"
 #include "cli/framework/quantity.h"
+#include "cli/framework/standard_streams.h"
 #include "cli/results/output_names.h"
 #include "cli/results/run_report.h"
 #include "cli/voxels/solid_input.h"
@@ -14,7 +15,7 @@
 typedef struct voxelize_args {
     cli_common common;
     cli_input input; /* how meshes and the scan are read */
-    const char *output, *like, *json;
+    const char *output, *format, *like, *json;
     cli_lengths spacing;
     cli_ranges box;
     bool partial, no_clobber;
@@ -23,11 +24,13 @@ typedef struct voxelize_args {
 
 static const cli_option options[] = {
     {"output", 'o', CLI_TEXT, "FILE",
-     "Volume to write: .nrrd, .nii, .nii.gz or .mha; may hold {stem}",
+     "Volume to write: .nrrd, .nii, .nii.gz or .mha; - is the standard output (with --format); may hold {stem}",
      offsetof(voxelize_args, output), CLI_VALUES_VOLUME_OUTPUT},
     {"partial", 0, CLI_FLAG, NULL,
      "Write the fraction of each voxel that is inside, 0 to 1 (off: a label for each part)",
      offsetof(voxelize_args, partial)},
+    {"format", 0, CLI_TEXT, "NAME", "Format to write; names as in 'formats' (by extension)",
+     offsetof(voxelize_args, format)},
     {"no-clobber", 0, CLI_FLAG, NULL, "Fail if the output exists (off: replace it)",
      offsetof(voxelize_args, no_clobber)},
     CLI_JSON_OPTION(voxelize_args),
@@ -83,7 +86,10 @@ static cw_status check_args(voxelize_run *r, cw_error *err)
     if (st != CW_OK)
         return st;
     path = r->outputs.path[0];
-    if (!cw_volume_format(path, NULL))
+    if (!cw_volume_format(path, args->format) && args->format)
+        return cwi_fail(err, CW_ERR_ARGUMENT, "--format %s: no volumes are written in it",
+                        args->format);
+    if (!cw_volume_format(path, args->format))
         return cwi_fail(
             err, CW_ERR_ARGUMENT,
             "%s: no writer of volumes has this extension; there are .nrrd, .nii, .nii.gz and .mha",
@@ -159,13 +165,16 @@ static cw_status write_volume(voxelize_run *r, cw_error *err)
     cw_status st = CW_OK;
     for (size_t n = 0; n < r->solids.count && st == CW_OK && !r->args->partial; n++)
         st = cw_label_table_add(&table, &r->solids.solid[n].label, err);
-    const cw_write_desc desc = {.no_clobber = r->args->no_clobber,
+    const cw_write_desc desc = {.format = r->args->format,
+                                .no_clobber = r->args->no_clobber,
+                                .name = cli_is_standard(path) ? "labels" : NULL,
+                                .sink = cli_output_sink(path),
                                 .labels = r->args->partial ? NULL : &table,
                                 .progress = cli_progress(1, "file")};
     if (st == CW_OK)
         st = cw_volume_write(path, &r->volume, &desc, err);
     if (st == CW_OK)
-        tell_lost_names(r, cw_volume_format(path, NULL));
+        tell_lost_names(r, cw_volume_format(path, r->args->format));
     cw_label_table_free(&table);
     return st;
 }

@@ -1,5 +1,5 @@
 /* Opens, writes and reads temporary files that have no name. */
-#define _GNU_SOURCE /* O_TMPFILE */
+#define _GNU_SOURCE /* O_TMPFILE, memfd_create */
 #include "core/base/unnamed_file.h"
 
 #include "core/base/memory.h"
@@ -9,6 +9,7 @@
 #include <fcntl.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/mman.h>
 #include <unistd.h>
 
 char *cwi_folder_of(const char *path)
@@ -39,6 +40,14 @@ cw_status cwi_unnamed_open(const char *folder, int *file, cw_error *err)
     }
     return *file >= 0 ? CW_OK
                       : cwi_fail(err, CW_ERR_OUTPUT, "no temporary file in '%s': %s", folder,
+                                 strerror(errno));
+}
+
+cw_status cwi_unnamed_open_memory(int *file, cw_error *err)
+{
+    *file = memfd_create("cubewright", MFD_CLOEXEC);
+    return *file >= 0 ? CW_OK
+                      : cwi_fail(err, CW_ERR_OUTPUT, "no temporary file in memory: %s",
                                  strerror(errno));
 }
 

@@ -15,6 +15,10 @@ char *cwi_folder_of(const char *path);
  * Returns CW_ERR_OUTPUT, CW_ERR_NO_MEMORY */
 CW_NODISCARD cw_status cwi_unnamed_open(const char *folder, int *file, cw_error *err);
 
+/* Opens an empty file in memory, to be closed with close(). *file is -1 on failure.
+ * Returns CW_ERR_OUTPUT */
+CW_NODISCARD cw_status cwi_unnamed_open_memory(int *file, cw_error *err);
+
 /* Writes bytes at an offset. folder: of the file, for the message
  * Returns CW_ERR_OUTPUT when the disk is full. */
 CW_NODISCARD cw_status cwi_unnamed_write(const char *folder, int file, size_t at,

@@ -28,7 +28,10 @@ struct cwi_outfile {
     char temporary
         [CWI_FILE_NAME_BYTES]; /* in the same folder; "" before it exists and after it is removed */
     bool no_clobber;
-    bool joined;   /* the temporary is another process's */
+    bool joined;  /* the temporary is another process's, or has no name */
+    bool unnamed; /* it has no name, and needs no flush to the disk */
+    bool counts;  /* its bytes are memory: counted of them */
+    size_t counted;
     int failure;   /* errno of the first write that failed */
     int slot;      /* in the registry; -1 for none */
     uint64_t size; /* number of bytes so far, including those in the buffer */
@@ -146,6 +149,7 @@ static void close_and_free(cwi_outfile **f)
     if ((*f)->temporary[0])
         unlinkat((*f)->folder, (*f)->temporary, 0);
     slot_drop(&(*f)->slot);
+    cwi_memory_give((*f)->counted);
     if ((*f)->folder >= 0)
         close((*f)->folder);
     cwi_free((*f)->buffer);
@@ -221,6 +225,22 @@ cw_status cwi_outfile_join(cwi_outfile **out, const char *path, const char *temp
     return st;
 }
 
+cw_status cwi_outfile_open_at(cwi_outfile **out, int fd, bool in_memory, cw_error *err)
+{
+    cw_status st = new_file(out, "", err);
+    if (st != CW_OK)
+        return st;
+    cwi_outfile *f = *out;
+    f->joined = f->unnamed = true;
+    f->counts = in_memory;
+    f->fd = fcntl(fd, F_DUPFD_CLOEXEC, 0);
+    if (f->fd >= 0)
+        return CW_OK;
+    st = fail_system(err, "its temporary file cannot be opened", errno);
+    close_and_free(out);
+    return st;
+}
+
 const char *cwi_outfile_temporary(const cwi_outfile *f)
 {
     return f->temporary;
@@ -228,13 +248,26 @@ const char *cwi_outfile_temporary(const cwi_outfile *f)
 
 static cw_status fail_write(const cwi_outfile *f, cw_error *err)
 {
+    if (f->counts && f->failure == ENOMEM)
+        return cwi_fail_memory(err);
     return fail_system(err, "it cannot be written", f->failure);
+}
+
+/* Counts bytes that are appended to a file in memory. */
+static void count_bytes(cwi_outfile *f, size_t size)
+{
+    if (f->counts && !f->failure && cwi_memory_take(size))
+        f->counted += size;
+    else if (f->counts && !f->failure)
+        f->failure = ENOMEM;
 }
 
 /* Writes at the end of the file or, if `at` is not negative, over the bytes there. */
 static cw_status write_through(cwi_outfile *f, const unsigned char *bytes, size_t size,
                                off_t at, cw_error *err)
 {
+    if (at < 0)
+        count_bytes(f, size);
     while (size && !f->failure) {
         const ssize_t n = at < 0 ? write(f->fd, bytes, size) : pwrite(f->fd, bytes, size, at);
         if (n > 0) {
@@ -348,9 +381,9 @@ cw_status cwi_outfile_finish(cwi_outfile *f, cw_error *err)
     cw_status st = f->failure ? fail_write(f, err) : flush_file(f, err);
     if (st != CW_OK)
         return st;
-    int synced;
+    int synced = 0;
     do
-        synced = fsync(f->fd);
+        synced = f->unnamed ? 0 : fsync(f->fd);
     while (synced != 0 && errno == EINTR);
     if (synced != 0 && !cannot_sync(errno))
         return fail_system(err, "it cannot be flushed to the disk", errno);

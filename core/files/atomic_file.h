@@ -23,6 +23,15 @@ typedef struct cwi_outfile cwi_outfile;
 CW_NODISCARD cw_status cwi_outfile_open(cwi_outfile **out, const char *path, bool no_clobber,
                                         cw_error *err);
 
+/* Opens an output on an empty file that has no name, such as one in memory. Its commit leaves the
+ * bytes there, and flushes no disk.
+ *
+ * fd         borrowed: the output has a copy of it
+ * in_memory  its bytes count for cw_memory_limit() until it is committed or aborted
+ * Returns    CW_ERR_OUTPUT, CW_ERR_NO_MEMORY */
+CW_NODISCARD cw_status cwi_outfile_open_at(cwi_outfile **out, int fd, bool in_memory,
+                                           cw_error *err);
+
 /* Appends bytes; buffered. Returns CW_ERR_OUTPUT when they cannot be written. Later writes and
  * the commit then fail with the same message. */
 CW_NODISCARD cw_status cwi_outfile_write(cwi_outfile *f, const void *bytes, size_t size,

@@ -269,6 +269,10 @@ static cw_status list_all(listing *l, cw_error *err)
 
 cw_status cwi_files_beside(const cwi_input *in, cwi_names *names, size_t *links, cw_error *err)
 {
+    const char *slash = strrchr(in->path, '/');
+    *links = 0;
+    if (cwi_input_is_stored(in))
+        return cwi_names_add(names, slash ? slash + 1 : in->path, err);
     listing l = {.in = in, .names = names};
     cw_status st = list_all(&l, err);
     *links = l.links;

@@ -6,6 +6,7 @@
 #include "core/base/memory.h"
 #include "core/base/status.h"
 #include "core/base/text.h"
+#include "core/files/stored_file.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -88,6 +89,22 @@ cw_status cwi_input_open(cwi_input *in, const char *path, cw_error *err)
     if (st != CW_OK)
         cwi_input_close(in);
     return st;
+}
+
+cw_status cwi_input_open_stored(cwi_input *in, const cw_stored_file *file, cw_error *err)
+{
+    *in = (cwi_input){.path = file->name, .folder = -1, .fd = -1, .size = file->size};
+    return cwi_stored_file_reopen(file, &in->fd, err);
+}
+
+bool cwi_input_is_stored(const cwi_input *in)
+{
+    return in->path && in->folder < 0 && in->fd >= 0;
+}
+
+const char *cwi_input_name(const char *path, const cw_stored_file *file)
+{
+    return file ? file->name : path;
 }
 
 cw_status cwi_input_open_folder(cwi_input *in, const char *path, cw_error *err)
@@ -182,6 +199,9 @@ static const char *with_slashes(const char *name, char text[LONGEST_NAME + 2])
 static cw_status open_named(const cwi_input *in, const char *name, int *fd, uint64_t *size,
                             cw_error *err)
 {
+    if (cwi_input_is_stored(in))
+        return cwi_fail(err, CW_ERR_UNSUPPORTED,
+                        "this file is missing: data without a path have no files beside them");
     if (in->allow_external)
         return open_regular(in->folder, name, 0, fd, size, err);
     cw_status st = check_name(name, err);
@@ -208,6 +228,8 @@ cw_status cwi_input_find_side(const cwi_input *in, const char *name, int *fd, ui
 {
     cw_error why = {0};
     *fd = -1;
+    if (cwi_input_is_stored(in) && !cwi_input_is_named(in, name))
+        return CW_OK;
     errno = 0;
     cw_status st = cwi_input_open_side(in, name, fd, size, &why);
     if (st == CW_ERR_IO && errno == ENOENT) {

@@ -8,7 +8,7 @@
 /* An open file, and the folder in which it was named. */
 typedef struct cwi_input {
     const char *path; /* borrowed */
-    int folder;       /* folder of the side files */
+    int folder; /* folder of the side files; -1: there are none, as the file has no path */
     int fd;
     uint64_t size;                 /* number of bytes that the system reports */
     bool allow_external;           /* side files may lie elsewhere */
@@ -25,6 +25,17 @@ typedef struct cwi_input {
 CW_NODISCARD cw_status cwi_input_open(cwi_input *in, const char *path, cw_error *err);
 void cwi_input_close(cwi_input *in);
 
+/* Opens a file that has no path. It has no side files: those that it names are
+ * CW_ERR_UNSUPPORTED. Returns CW_ERR_IO. */
+CW_NODISCARD cw_status cwi_input_open_stored(cwi_input *in, const cw_stored_file *file,
+                                             cw_error *err);
+
+/* Returns true for an open file that has no path. */
+bool cwi_input_is_stored(const cwi_input *in);
+
+/* Returns the name of a file for messages: that of the stored one, else the path. */
+const char *cwi_input_name(const char *path, const cw_stored_file *file);
+
 /* Opens a folder in which side files are found; there is no file. Returns CW_ERR_IO. */
 CW_NODISCARD cw_status cwi_input_open_folder(cwi_input *in, const char *path, cw_error *err);
 
@@ -35,7 +46,8 @@ bool cwi_input_is_named(const cwi_input *in, const char *name);
  * in->allow_external it must lie in the header's folder or below. No absolute path, "..",
  * scheme or percent sign, and no link on the way is allowed. A backslash, as Windows writes it, is
  * taken as a slash. The caller closes the file.
- * Returns CW_ERR_UNSAFE for a name that leaves the folder, else as cwi_input_open(). */
+ * Returns CW_ERR_UNSAFE for a name that leaves the folder, CW_ERR_UNSUPPORTED beside a file without a
+ * path, else as cwi_input_open(). */
 CW_NODISCARD cw_status cwi_input_open_side(const cwi_input *in, const char *name, int *fd,
                                            uint64_t *size, cw_error *err);
 

@@ -65,6 +65,16 @@ static void note_scan(const cw_read_desc *desc, const cwi_dicom_scan *found, boo
                  found->copies);
 }
 
+/* Refuses one image of a series whose other files are elsewhere. */
+static cw_status expect_series(const cw_volume *shape, cw_error *err)
+{
+    if (shape->dim[2] * shape->steps > 1)
+        return CW_OK;
+    return cwi_fail(err, CW_ERR_UNSUPPORTED,
+                    "one image of a DICOM series: the others are missing, and data without a "
+                    "path have no files beside them; files of many frames are read");
+}
+
 /* Parts segments that overlap into layers, and adds their names to the table that is wanted. */
 static cw_status read_segments(const cwi_dicom_scan *found, size_t series, const cwi_input *in,
                                cwi_planes *planes, const cw_read_desc *desc, cwi_stack *stack,
@@ -108,6 +118,8 @@ cw_status cwi_dicom_read(const cwi_input *in, cwi_names *names, const cw_read_de
         note_scan(desc, &found, names != NULL);
     if (st == CW_OK)
         st = cwi_dicom_stack(&found, series, desc, &stack, &findings, err);
+    if (st == CW_OK && cwi_input_is_stored(in))
+        st = expect_series(&stack.shape, err);
     if (st == CW_OK)
         st = cwi_check_frame(&stack.shape, "ImagePositionPatient", err);
     if (st == CW_OK) {

@@ -6,6 +6,7 @@
 
 #include "core/files/atomic_file.h"
 #include "core/files/atomic_folder.h"
+#include "core/files/stored_file.h"
 #include "formats/bytes/little_endian.h"
 #include "formats/mesh/mesh_axes.h"
 #include "formats/mesh/mesh_spool.h"
@@ -66,6 +67,7 @@ typedef cw_status cwi_drain(void *to, const void *bytes, size_t size, cw_error *
 
 typedef struct cwi_mesh_output {
     cwi_outfile *file;
+    cwi_byte_output bytes;  /* takes the bytes of the file; zeroed: none does */
     cwi_outfolder *folder;  /* in place of the file, for formats of many files */
     cwi_outfile *side;      /* a second file that a writer opens beside the path; NULL: none */
     cwi_outfile **pictures; /* more of them: picture_count, from cwi_realloc_array() */

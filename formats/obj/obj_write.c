@@ -164,6 +164,10 @@ static cw_status write_materials(const cwi_parts *parts, cwi_mesh_output *out, c
 {
     const char *slash = strrchr(out->path, '/');
     const char *name = slash ? slash + 1 : out->path, *dot = strrchr(name, '.');
+    if (out->desc->sink)
+        return cwi_fail(err, CW_ERR_UNSUPPORTED,
+                        "OBJ keeps materials and pictures in files of their own, which no sink "
+                        "takes (desc->sink); ply and glb are one file with colours");
     const size_t length = dot && dot != name ? (size_t)(dot - out->path) : strlen(out->path);
     char *path = cwi_alloc_array(length + sizeof ".mtl", 1), material[MATERIAL_BYTES];
     if (!path)

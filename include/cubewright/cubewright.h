@@ -36,6 +36,7 @@
 #include <cubewright/slice_filter.h>
 #include <cubewright/smooth.h>
 #include <cubewright/spool.h>
+#include <cubewright/stored_file.h>
 #include <cubewright/stream.h>
 #include <cubewright/team.h>
 #include <cubewright/transfer.h>

@@ -1,4 +1,5 @@
-/* Reading and writing of files: volumes, meshes, series of slices and of time steps. */
+/* Reading and writing of files: volumes, meshes, series of slices and of time steps. Bytes in memory
+ * and streams are read and written as files are: see cw_volume_read_memory(), cw_mesh_write_memory(). */
 #ifndef CUBEWRIGHT_FORMATS_H
 #define CUBEWRIGHT_FORMATS_H
 
@@ -6,6 +7,7 @@
 #include <cubewright/mesh.h>
 #include <cubewright/picture.h>
 #include <cubewright/spool.h>
+#include <cubewright/stored_file.h>
 #include <cubewright/volume.h>
 
 #ifdef __cplusplus
@@ -152,6 +154,9 @@ typedef struct cw_read_desc {
                           do not fit 32 are CW_ERR_FORMAT */
     bool round_labels; /* with ids: values that are not whole are rounded to the nearest, and
                           counted in it. Default: CW_ERR_ARGUMENT, naming the voxel */
+
+    const cw_stored_file *stored; /* the bytes to read, in place of those at the path, which may
+                                     then be NULL; default: none */
 } cw_read_desc;
 
 /* Reads a volume: the whole file or a region of it, every component and time step.
@@ -192,6 +197,23 @@ typedef struct cw_read_desc {
 CW_NODISCARD CW_API cw_status cw_volume_read(const char *path, const cw_read_desc *desc,
                                              cw_volume *volume, const char **format,
                                              cw_error *err);
+
+/* Reads a volume from bytes in memory or from a function of the caller, with the limits, guards and
+ * sandbox of files. The format is found by content, else by the extension of source->name.
+ *
+ * There are no files beside the bytes. Those that a header names are CW_ERR_UNSUPPORTED, and the
+ * message names them: detached voxels of NRRD and MetaImage, pairs of NIfTI, pieces of VTK. So are a
+ * file of Zarr, N5 or Neuroglancer, and one image of a DICOM series; DICOM of many frames is read.
+ *
+ * source   borrowed until the call returns
+ * desc     as for cw_volume_read(); stored is not used
+ * volume   filled on success, else emptied; free it with cw_volume_free()
+ * format   set to the reader's name (static); may be NULL
+ * Returns  as cw_stored_file_open() and cw_volume_read()
+ * Cost     that of cw_volume_read(), and one copy of the bytes meanwhile */
+CW_NODISCARD CW_API cw_status cw_volume_read_memory(const cw_byte_source *source,
+                                                    const cw_read_desc *desc, cw_volume *volume,
+                                                    const char **format, cw_error *err);
 
 /* Finds the numbers of a label map's labels slice by slice, for a cw_volume_visit(): all components
  * of a step.
@@ -370,7 +392,9 @@ typedef struct cw_mesh_read_desc {
     bool truncated; /* take the whole facets of an STL that breaks off; default: refused */
     cw_claim claim; /* on the file's coordinates; default: as the file states, else LPS
                                mm */
-    cw_progress progress; /* default: none */
+    cw_progress progress;         /* default: none */
+    const cw_stored_file *stored; /* the bytes to read, in place of those at the path, which may
+                                     then be NULL; default: none */
 } cw_mesh_read_desc;
 
 /* Facts that a mesh file states, and the reader's decisions. */
@@ -484,6 +508,21 @@ typedef struct cw_mesh_file {
  * Cost     one pass over the file; 24 bytes a vertex and 12 a triangle while it is read */
 CW_NODISCARD CW_API cw_status cw_mesh_read(const char *path, const cw_mesh_read_desc *desc,
                                            cw_mesh *mesh, cw_mesh_file *file, cw_error *err);
+
+/* Reads a mesh from bytes in memory or from a function of the caller, as cw_volume_read_memory() does.
+ * Buffers of glTF in other files, materials of OBJ (.mtl) and pieces of VTK are CW_ERR_UNSUPPORTED, named
+ * by the message. Pictures of glTF in other files are left out (cw_mesh_file.left_out), as where such a
+ * file is missing. For parts see cw_mesh_read_desc.stored and cw_parts_read().
+ *
+ * source   borrowed until the call returns
+ * desc     as for cw_mesh_read(); stored is not used
+ * mesh     filled on success, emptied on failure; free it with cw_mesh_free()
+ * file     filled on success; may be NULL
+ * Returns  as cw_stored_file_open() and cw_mesh_read()
+ * Cost     that of cw_mesh_read(), and one copy of the bytes meanwhile */
+CW_NODISCARD CW_API cw_status cw_mesh_read_memory(const cw_byte_source *source,
+                                                  const cw_mesh_read_desc *desc, cw_mesh *mesh,
+                                                  cw_mesh_file *file, cw_error *err);
 
 /* A picture on a surface: the bytes of its file. PNG and JPEG are known; those of others, such as WebP and
  * KTX2, are read and written as they are. */
@@ -631,6 +670,12 @@ typedef struct cw_write_desc {
                     colours of its labels, for a format whose keeps have
                                      CW_KEEPS_LABELS: NRRD (as segments of 3D Slicer) and NIfTI (as the
                                      LabelTable of Connectome Workbench); others leave them out; default: none */
+    const cw_byte_sink
+        *sink; /* receiver of the file's bytes, in place of the path, of which the
+                                 extension and the name alone count; NULL is then allowed for
+                                 it. CW_ERR_UNSUPPORTED for what takes more files than one: the
+                                 folders of neuroglancer, and OBJ with materials or pictures;
+                                 default: none */
 } cw_write_desc;
 
 /* Writes a volume to a file beside the path, flushes it, then renames it. So the path holds
@@ -663,6 +708,35 @@ CW_NODISCARD CW_API cw_status cw_volume_write(const char *path, const cw_volume 
  *          CW_ERR_LIMIT when the format's own sizes are too small for the mesh. */
 CW_NODISCARD CW_API cw_status cw_mesh_write(const char *path, const cw_mesh *mesh,
                                             const cw_write_desc *desc, cw_error *err);
+
+/* Writes a mesh to memory: the bytes of the file that cw_mesh_write() makes. To hand them to a function
+ * piece by piece, give cw_mesh_write() or cw_parts_write() a cw_write_desc.sink.
+ *
+ * name     a file name such as "mesh.stl": its extension is the format, its stem the name of the
+ *          object inside. NULL: desc->format is the format
+ * mesh     borrowed
+ * desc     as for cw_mesh_write(); sink is not used
+ * bytes    set to the file's bytes, to be freed with cw_bytes_free(); NULL on failure
+ * size     set to their number
+ * Returns  as cw_mesh_write(); CW_ERR_UNSUPPORTED: it takes more files than one, as OBJ with
+ *          materials or pictures does
+ * Cost     that of cw_mesh_write(), and the bytes twice until the call returns */
+CW_NODISCARD CW_API cw_status cw_mesh_write_memory(const char *name, const cw_mesh *mesh,
+                                                   const cw_write_desc *desc, uint8_t **bytes,
+                                                   size_t *size, cw_error *err);
+
+/* Writes a volume to memory: the bytes of the file that cw_volume_write() makes.
+ *
+ * name     a file name such as "scan.nii.gz"; NULL: desc->format is the format
+ * volume   borrowed
+ * desc     as for cw_volume_write(); sink is not used
+ * bytes    set to the file's bytes, to be freed with cw_bytes_free(); NULL on failure
+ * size     set to their number
+ * Returns  as cw_volume_write()
+ * Cost     that of cw_volume_write(), and the bytes twice until the call returns */
+CW_NODISCARD CW_API cw_status cw_volume_write_memory(const char *name, const cw_volume *volume,
+                                                     const cw_write_desc *desc, uint8_t **bytes,
+                                                     size_t *size, cw_error *err);
 
 /* Writes parts into one file. OBJ and 3MF get an object for each. In the other formats the
  * parts are joined into one mesh, with the arrays that all of them have. Parts without

@@ -2134,6 +2134,50 @@ cw_fragment._fields_ = [
 ]
 
 
+class cw_byte_source(Structure):
+    version: int
+    name: bytes | None
+    bytes: Any
+    size: int
+    read: Any
+    user: Any
+    max_bytes: int
+    folder: bytes | None
+
+
+cw_byte_source._fields_ = [
+    ("version", c_uint32),
+    ("name", c_char_p),
+    ("bytes", c_void_p),
+    ("size", c_uint64),
+    ("read", CFUNCTYPE(c_int, c_void_p, c_void_p, c_size_t, POINTER(c_size_t), POINTER(cw_error))),
+    ("user", c_void_p),
+    ("max_bytes", c_uint64),
+    ("folder", c_char_p),
+]
+
+
+class cw_stored_file(Structure):
+    pass
+
+
+class cw_byte_sink(Structure):
+    version: int
+    begin: Any
+    write: Any
+    user: Any
+    folder: bytes | None
+
+
+cw_byte_sink._fields_ = [
+    ("version", c_uint32),
+    ("begin", CFUNCTYPE(c_int, c_void_p, c_uint64, POINTER(cw_error))),
+    ("write", CFUNCTYPE(c_int, c_void_p, c_void_p, c_size_t, POINTER(cw_error))),
+    ("user", c_void_p),
+    ("folder", c_char_p),
+]
+
+
 class cw_raw_layout(Structure):
     dim: Any
     type: int
@@ -2216,6 +2260,7 @@ class cw_read_desc(Structure):
     nodata_value: float
     ids: Any
     round_labels: bool
+    stored: Any
 
 
 cw_read_desc._fields_ = [
@@ -2247,6 +2292,7 @@ cw_read_desc._fields_ = [
     ("nodata_value", c_double),
     ("ids", POINTER(cw_label_ids)),
     ("round_labels", c_bool),
+    ("stored", POINTER(cw_stored_file)),
 ]
 
 
@@ -2325,6 +2371,7 @@ class cw_mesh_read_desc(Structure):
     truncated: bool
     claim: Any
     progress: Any
+    stored: Any
 
 
 cw_mesh_read_desc._fields_ = [
@@ -2338,6 +2385,7 @@ cw_mesh_read_desc._fields_ = [
     ("truncated", c_bool),
     ("claim", cw_claim),
     ("progress", cw_progress),
+    ("stored", POINTER(cw_stored_file)),
 ]
 
 
@@ -2536,6 +2584,7 @@ class cw_write_desc(Structure):
     provenance_count: int
     progress: Any
     labels: Any
+    sink: Any
 
 
 cw_write_desc._fields_ = [
@@ -2557,6 +2606,7 @@ cw_write_desc._fields_ = [
     ("provenance_count", c_size_t),
     ("progress", cw_progress),
     ("labels", POINTER(cw_label_table)),
+    ("sink", POINTER(cw_byte_sink)),
 ]
 
 
@@ -4524,9 +4574,13 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "cw_fragment_write": (c_int, [c_char_p, POINTER(cw_fragment), POINTER(cw_mesh_spool), POINTER(cw_error)]),
     "cw_fragment_read": (c_int, [c_char_p, POINTER(cw_fragment), POINTER(cw_error)]),
     "cw_fragment_append": (c_int, [c_char_p, POINTER(cw_mesh_spool), POINTER(cw_error)]),
+    "cw_stored_file_open": (c_int, [POINTER(cw_byte_source), POINTER(POINTER(cw_stored_file)), POINTER(cw_error)]),
+    "cw_stored_file_close": (None, [POINTER(cw_stored_file)]),
+    "cw_stored_file_size": (c_uint64, [POINTER(cw_stored_file)]),
     "cw_unit_name": (c_char_p, [c_int]),
     "cw_unit_mm": (c_double, [c_int]),
     "cw_volume_read": (c_int, [c_char_p, POINTER(cw_read_desc), POINTER(cw_volume), POINTER(c_char_p), POINTER(cw_error)]),
+    "cw_volume_read_memory": (c_int, [POINTER(cw_byte_source), POINTER(cw_read_desc), POINTER(cw_volume), POINTER(c_char_p), POINTER(cw_error)]),
     "cw_label_ids_read": (c_int, [c_char_p, POINTER(cw_read_desc), c_size_t, POINTER(cw_label_ids), POINTER(cw_error)]),
     "cw_volume_visit": (c_int, [c_char_p, POINTER(cw_read_desc), c_size_t, c_size_t, POINTER(cw_slice_visitor), POINTER(c_char_p), POINTER(cw_error)]),
     "cw_steps_list": (c_int, [POINTER(c_char_p), c_size_t, POINTER(cw_read_desc), POINTER(POINTER(POINTER(c_char))), POINTER(c_size_t), POINTER(cw_error)]),
@@ -4541,11 +4595,14 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "cw_label_table_beside": (c_int, [c_char_p, POINTER(POINTER(c_char)), POINTER(cw_error)]),
     "cw_raw_layout_parse": (c_int, [c_char_p, POINTER(cw_raw_layout), POINTER(cw_error)]),
     "cw_mesh_read": (c_int, [c_char_p, POINTER(cw_mesh_read_desc), POINTER(cw_mesh), POINTER(cw_mesh_file), POINTER(cw_error)]),
+    "cw_mesh_read_memory": (c_int, [POINTER(cw_byte_source), POINTER(cw_mesh_read_desc), POINTER(cw_mesh), POINTER(cw_mesh_file), POINTER(cw_error)]),
     "cw_texture_decode": (c_int, [POINTER(cw_texture), POINTER(cw_mesh_read_desc), POINTER(cw_image), POINTER(cw_error)]),
     "cw_parts_read": (c_int, [c_char_p, POINTER(cw_mesh_read_desc), POINTER(POINTER(cw_part)), POINTER(c_size_t), POINTER(cw_mesh_file), POINTER(cw_error)]),
     "cw_parts_free": (None, [POINTER(cw_part), c_size_t]),
     "cw_volume_write": (c_int, [c_char_p, POINTER(cw_volume), POINTER(cw_write_desc), POINTER(cw_error)]),
     "cw_mesh_write": (c_int, [c_char_p, POINTER(cw_mesh), POINTER(cw_write_desc), POINTER(cw_error)]),
+    "cw_mesh_write_memory": (c_int, [c_char_p, POINTER(cw_mesh), POINTER(cw_write_desc), POINTER(POINTER(c_uint8)), POINTER(c_size_t), POINTER(cw_error)]),
+    "cw_volume_write_memory": (c_int, [c_char_p, POINTER(cw_volume), POINTER(cw_write_desc), POINTER(POINTER(c_uint8)), POINTER(c_size_t), POINTER(cw_error)]),
     "cw_parts_write": (c_int, [c_char_p, POINTER(cw_part), c_size_t, POINTER(cw_write_desc), POINTER(cw_error)]),
     "cw_parts_write_with_consent": (c_int, [c_char_p, POINTER(cw_part), c_size_t, POINTER(cw_write_desc), POINTER(cw_write_consent), POINTER(cw_error)]),
     "cw_mesh_write_loss": (c_int, [c_char_p, POINTER(cw_mesh), POINTER(cw_write_desc), POINTER(cw_write_loss), POINTER(cw_error)]),

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable, Sequence
 from ctypes import POINTER, byref, c_char_p, c_size_t, pointer, string_at
 from dataclasses import dataclass
-from typing import Any, Union
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -25,9 +24,9 @@ from ._options import (
     take_text,
 )
 from ._progress import Progress, Reporter
+from ._streams import Path, Source, open_source
 from ._volume import Label, Volume, take_ids, take_spacing
 
-Path = Union[str, "os.PathLike[str]"]
 UNITS = ("mm", "um", "cm", "m", "in", "ft")
 
 _NOTE: Any = dict(c.cw_read_desc._fields_)["note"]  # type: ignore[arg-type]
@@ -78,8 +77,9 @@ def take_labels(table: c.cw_label_table) -> list[Label]:
 
 
 def read_volume(
-    path: Path,
+    path: Source,
     *,
+    name: str | None = None,
     reader: str | None = None,
     raw: str | None = None,
     spacing: float | str | Sequence[float | str] | None = None,
@@ -108,6 +108,12 @@ def read_volume(
     progress: Progress = None,
 ) -> Volume:
     """Reads a volume: every component and time step of a file, folder or pattern of slices.
+
+    path may also be the bytes of a file, or a binary file object, which is read to its end. There are no
+    files beside those: formats of several files are refused. A file object goes to a temporary file.
+
+    name        file name of bytes or of a file object, such as 'scan.nrrd': its extension counts where
+                content does not tell the format, and messages begin with it (file.name, '(memory)')
 
     Options are those of the command: `cubewright help extract` explains them.
 
@@ -173,7 +179,8 @@ def read_volume(
         desc.note = _NOTE(lambda _user, text: note(name_keywords(text or b"")))
     out, form = Owner(c.cw_volume(), lib.cw_volume_free), c_char_p()
     try:
-        reporter.call(lib.cw_volume_read, take_path("path", path), byref(desc), byref(out.struct), byref(form))
+        with open_source(path, name, desc) as file:
+            reporter.call(lib.cw_volume_read, file, byref(desc), byref(out.struct), byref(form))
         volume = Volume._from_c(out)
         volume.ids = take_ids(ids)
     finally:
@@ -226,8 +233,9 @@ def make_mesh_desc(options: dict[str, Any], reporter: Reporter) -> c.cw_mesh_rea
 
 
 def read_mesh(
-    path: Path,
+    path: Source,
     *,
+    name: str | None = None,
     mesh_reader: str | None = None,
     input_unit: str | None = None,
     input_frame: str | None = None,
@@ -245,6 +253,7 @@ def read_mesh(
 
     mesh_reader  a name of formats(); default: by content
     truncated    take the whole facets of an STL file that breaks off; else it is refused
+    path may be bytes or a binary file object, as for read_volume(), with their name.
     Other options are those of read_volume(). Raises the same errors.
 
     mesh.facts tells the findings of the reader, such as "left_out": "material groups" and "not_applied".
@@ -253,14 +262,16 @@ def read_mesh(
     reporter = Reporter(progress)
     desc, file = make_mesh_desc(options, reporter), c.cw_mesh_file()
     mesh = Mesh._from_c(c.cw_mesh())
-    reporter.call(lib.cw_mesh_read, take_path("path", path), byref(desc), byref(mesh._struct), byref(file))
+    with open_source(path, name, desc) as target:
+        reporter.call(lib.cw_mesh_read, target, byref(desc), byref(mesh._struct), byref(file))
     mesh.facts = unpack(file)
     return mesh
 
 
 def read_parts(
-    path: Path,
+    path: Source,
     *,
+    name: str | None = None,
     mesh_reader: str | None = None,
     input_unit: str | None = None,
     input_frame: str | None = None,
@@ -283,9 +294,8 @@ def read_parts(
     reporter = Reporter(progress)
     desc, file = make_mesh_desc(options, reporter), c.cw_mesh_file()
     rows, count = POINTER(c.cw_part)(), c_size_t()
-    reporter.call(
-        lib.cw_parts_read, take_path("path", path), byref(desc), byref(rows), byref(count), byref(file)
-    )
+    with open_source(path, name, desc) as target:
+        reporter.call(lib.cw_parts_read, target, byref(desc), byref(rows), byref(count), byref(file))
     try:
         return [take_part(row, unpack(file)) for row in rows[: count.value]]
     finally:

@@ -27,7 +27,7 @@ from ._options import (
     take_threads,
 )
 from ._progress import Progress, Reporter
-from ._read import Path
+from ._streams import Path
 from ._volume import Volume, take_volume
 
 MODES = tuple(lib.cw_mode_name(mode).decode() for mode in range(c.cw_mode.CW_MODE_COUNT))

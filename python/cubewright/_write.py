@@ -13,10 +13,11 @@ import numpy.typing as npt
 from . import _declarations as c
 from ._library import lib
 from ._mesh import Mesh, take_mesh
-from ._options import take_choice, take_count, take_flag, take_length, take_path, take_text
+from ._options import take_choice, take_count, take_flag, take_length, take_text
 from ._progress import Progress, Reporter
-from ._read import PICTURES, UNITS, Part, Path
+from ._read import PICTURES, UNITS, Part
 from ._render import make_png
+from ._streams import Target, open_target
 from ._volume import Label, Volume
 
 COMPRESSIONS = ("none", "quantize", "draco", "meshopt")
@@ -59,7 +60,7 @@ def make_write_desc(options: dict[str, Any], reporter: Reporter) -> c.cw_write_d
 
 
 def write(
-    path: Path,
+    path: Target,
     what: Union[Mesh, Volume, Mapping[str, Mesh], Sequence[Part]],
     *,
     format: str | None = None,
@@ -78,6 +79,8 @@ def write(
 ) -> Written:
     """Writes a mesh, several named meshes, or a volume, in the format of the path's suffix.
 
+    path        or a binary file object, which gets the bytes of the file once all are made. Its format is
+                that of its name, if it has one; formats of several files are refused
     what        a Mesh; a dict of names and meshes, or a list of Part, which has labels too (parts
                 of a file, kept by glTF, OBJ, 3MF); or a Volume (.nrrd, .nii, .nii.gz, .mha)
     format      a name of formats(), in place of the suffix
@@ -96,16 +99,22 @@ def write(
     """
     options = {key: value for key, value in locals().items() if key not in ("path", "what", "progress")}
     reporter = Reporter(progress)
-    target = take_path("path", path)
     desc = make_write_desc(options, reporter)
     result = c.cw_compressed()
+    with open_target(path, desc) as target:
+        write_to(target, what, desc, result, reporter)
+    return summarize(result)
+
+
+def write_to(target: bytes | None, what: Any, desc: Any, result: Any, reporter: Reporter) -> None:
+    """Writes what there is to write to a path, or to the sink of desc."""
     if isinstance(what, Volume):
         if what.labels:
             rows = (c.cw_label * len(what.labels))(*(make_label(label) for label in what.labels))
             desc.labels = pointer(c.cw_label_table(count=len(rows), labels=rows))
         reporter.call(lib.cw_volume_write, target, byref(what._struct), byref(desc))
-        return summarize(result)
-    if compress != "none":
+        return
+    if desc.compression:
         desc.compressed = pointer(result)
     if isinstance(what, Mapping):
         what = [Part(title, mesh) for title, mesh in what.items()]
@@ -118,7 +127,6 @@ def write(
         reporter.call(lib.cw_mesh_write, target, byref(what._struct), byref(desc))
     else:
         raise TypeError(f"a Mesh, a dict of them or a Volume can be written, not a {type(what).__name__}")
-    return summarize(result)
 
 
 def fill_part(part: c.cw_part, given: Part) -> None:

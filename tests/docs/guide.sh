@@ -44,6 +44,7 @@ for file in torus.stl ramp.nrrd ball.stl; do
     [ -s $file ] || { echo "$file was not written"; bad=1; }
 done
 grep -q '^level 2 ends 2[78]\.[0-9] mm' volumes_and_meshes.out || { cat volumes_and_meshes.out; bad=1; }
+grep -q '^348 bytes of PLY, 284 of STL$' volumes_and_meshes.out || { cat volumes_and_meshes.out; bad=1; }
 grep -q '^unreadable: missing.nrrd' calls.out && grep -q '^usage: snap is ' calls.out ||
     { cat calls.out; echo "the errors are not as calls.md says"; bad=1; }
 [ $bad = 0 ] && echo "$count functions and a program of the pages ran"

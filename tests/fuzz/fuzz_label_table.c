@@ -2,6 +2,10 @@
 #define _GNU_SOURCE /* memfd_create */
 #include "fuzz_reader.h"
 
+#include <stdio.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
 /* The file lives in memory only. */
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size)
 {

@@ -4,10 +4,6 @@
 
 #include <cubewright/formats.h>
 
-#include <stdio.h>
-#include <sys/mman.h>
-#include <unistd.h>
-
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size);
 
 /* Adds up what a reader made of the bytes, so that every array is looked at from end to end. */
@@ -31,13 +27,12 @@ static inline double touch_mesh(const cw_mesh *m)
 }
 
 /* Takes the file apart, too; what its parts have is part of the whole. */
-static inline void fuzz_parts(const char *path, const cw_mesh_read_desc *desc,
-                              const cw_mesh *all)
+static inline void fuzz_parts(const cw_mesh_read_desc *desc, const cw_mesh *all)
 {
     cw_part *parts;
     size_t count, triangles = 0;
     cw_error err;
-    if (cw_parts_read(path, desc, &parts, &count, NULL, &err) != CW_OK)
+    if (cw_parts_read(NULL, desc, &parts, &count, NULL, &err) != CW_OK)
         return; /* over the limit of memory */
     for (size_t i = 0; i < count; i++) {
         volatile double sum = touch_mesh(parts[i].mesh);
@@ -49,26 +44,26 @@ static inline void fuzz_parts(const char *path, const cw_mesh_read_desc *desc,
     cw_parts_free(parts, count);
 }
 
-/* Reads the bytes as a file that lives in memory only, by a reader that is named. */
+/* Reads the bytes as a file in memory, by a reader that is named. */
 static inline int fuzz_mesh(const char *reader, const uint8_t *bytes, size_t size)
 {
-    char path[32];
+    cw_stored_file *stored;
     cw_mesh mesh;
     cw_mesh_file file;
     cw_error err;
-    const cw_mesh_read_desc desc = {
+    cw_mesh_read_desc desc = {
         .reader = reader, .max_bytes = (uint64_t)64 << 20, .no_sandbox = true};
-    const int fd = memfd_create("fuzz", MFD_CLOEXEC);
-    if (fd < 0 || write(fd, bytes, size) != (ssize_t)size)
+    const cw_byte_source source = {.bytes = bytes, .size = size};
+    if (cw_stored_file_open(&source, &stored, &err) != CW_OK)
         return 0;
-    snprintf(path, sizeof path, "/proc/self/fd/%d", fd);
-    if (cw_mesh_read(path, &desc, &mesh, &file, &err) == CW_OK) {
+    desc.stored = stored;
+    if (cw_mesh_read(NULL, &desc, &mesh, &file, &err) == CW_OK) {
         volatile double sum = touch_mesh(&mesh);
         (void)sum;
-        fuzz_parts(path, &desc, &mesh);
+        fuzz_parts(&desc, &mesh);
         cw_mesh_free(&mesh);
     }
-    close(fd);
+    cw_stored_file_close(stored);
     return 0;
 }
 

@@ -1,5 +1,4 @@
 /* Fuzzes the mesh reader of 3MF files: bytes that are no archive become the model of one. */
-#define _GNU_SOURCE /* memfd_create */
 #include "fuzz_mesh.h"
 
 #include <stdlib.h>

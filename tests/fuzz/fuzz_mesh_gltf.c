@@ -1,5 +1,4 @@
 /* Fuzzes the mesh reader of glTF and GLB files. */
-#define _GNU_SOURCE /* memfd_create */
 #include "fuzz_mesh.h"
 
 #include <string.h>

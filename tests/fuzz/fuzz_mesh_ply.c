@@ -1,5 +1,4 @@
 /* Fuzzes the mesh reader of PLY files. */
-#define _GNU_SOURCE /* memfd_create */
 #include "fuzz_mesh.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size)

@@ -5,9 +5,11 @@
 #include "fuzz_reader.h"
 
 #include <fcntl.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 static void make_path(char path[128], const char *folder, const char *name)
 {

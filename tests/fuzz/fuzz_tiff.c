@@ -1,5 +1,4 @@
 /* Fuzzes the volume reader of TIFF files. */
-#define _GNU_SOURCE /* memfd_create */
 #include "fuzz_reader.h"
 
 /* In this process, where the fuzzer sees what happens. */

@@ -1,5 +1,4 @@
 /* Fuzzes the volume reader of VTI files. */
-#define _GNU_SOURCE /* memfd_create */
 #include "fuzz_reader.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size)

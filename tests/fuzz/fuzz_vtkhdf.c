@@ -1,5 +1,4 @@
 /* Fuzzes the volume reader of VTKHDF files. */
-#define _GNU_SOURCE /* memfd_create */
 #include "fuzz_reader.h"
 
 /* Facts and rows that a damaged file makes of the sandboxed process are what our reader must stand: the
