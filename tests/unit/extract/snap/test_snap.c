@@ -426,7 +426,7 @@ static void shares_out_of_range_are_refused(void **state)
     static const double shares[] = {-0.1, 0.51, NAN, INFINITY};
     cw_volume v = test_sample(CW_FIELD_SPHERE, 8, CW_F32);
     for (int n = 0; n < 4; n++) {
-        cw_mesh mesh;
+        cw_mesh mesh = {0};
         cw_error err = {0};
         const cw_extract_desc d = {.snap = shares[n]};
         assert_fails(cw_extract(&v, &d, &mesh, NULL, &err), CW_ERR_ARGUMENT, "snap", err);
@@ -441,7 +441,7 @@ static void running_out_of_memory_leaves_nothing(void **state)
     const cw_extract_desc d = {.snap = 0.3, .threads = 1};
     bool failed = true;
     for (long n = 0; failed; n++) {
-        cw_mesh mesh;
+        cw_mesh mesh = {0};
         cw_error err = {0};
         cwi_alloc_fail_after(n);
         const cw_status st = cw_extract(&v, &d, &mesh, NULL, &err);
