@@ -52,6 +52,12 @@ for value in 0.2 0.4; do
     cmp level_$value.ply again/level_$value.ply
 done
 
+moving_surface moving.ply | tee printed
+closed moving.ply
+grep -q '^ball 7: [1-9][0-9]* of 343 bricks replaced' printed || fail "no brick was replaced"
+awk '/in the whole surface/ { exit $1 != $6 }' printed || fail "bricks are not the surface"
+grep -q '2 components' checked || fail "the wave and the ball are two components"
+
 if needs simplify simplify_and_check sphere.nrrd 0 0.05 small.stl; then
     grep -q '^closed manifold' printed || fail "the simplified sphere is not closed"
     closed small.stl
@@ -77,4 +83,4 @@ code=0
 render_to_png missing.nrrd none.png 2>error || code=$?
 [ $code = 3 ] && grep -q 'missing.nrrd' error || fail "a missing file gives exit code $code"
 [ ! -e none.png ] || fail "a picture of a missing file"
-echo "five examples were built against the installed library, and they work"
+echo "six examples were built against the installed library, and they work"

@@ -136,6 +136,26 @@ static void find_window(cwi_brick_grid *b, const cwi_bit_grid *whole, int window
     cwi_find_window(g, b->window[window]);
 }
 
+/* Returns true if 64 voxels can be read from each of the grid's rows on: they end in the row, or
+ * rows follow each other without gaps, and the last one ends in the volume. */
+static bool can_read_words(const cwi_brick_grid *b, const cw_volume *v)
+{
+    size_t after = b->first_voxel[0] + 64, place = 1;
+    const ptrdiff_t voxel = (ptrdiff_t)cw_type_size(v->type),
+                    row = voxel * (ptrdiff_t)v->dim[0];
+    if (v->stride[0] != voxel)
+        return false;
+    if (after <= v->dim[0])
+        return true;
+    if (v->stride[1] != row || v->stride[2] != row * (ptrdiff_t)v->dim[1])
+        return false;
+    for (int a = 1; a < 3; a++) {
+        place *= v->dim[a - 1];
+        after += (b->first_voxel[a] + b->shape.dim[a] - 1) * place;
+    }
+    return after <= place * v->dim[2];
+}
+
 /* Points the grid at a brick, in planes of its shape. */
 static cw_status place_grid(cwi_brick_grid *b, const cwi_brick_job *job, const size_t at[3],
                             cw_error *err)
@@ -151,6 +171,7 @@ static cw_status place_grid(cwi_brick_grid *b, const cwi_brick_job *job, const s
     if (st != CW_OK)
         return st;
     g->volume = view;
+    g->reads_whole_words = can_read_words(b, &job->volume);
     g->level = whole->level;
     g->strict = whole->strict;
     g->invert = whole->invert;
@@ -163,14 +184,30 @@ static cw_status place_grid(cwi_brick_grid *b, const cwi_brick_job *job, const s
     return CW_OK;
 }
 
+/* Finds the samples along an axis whose side matters: the corners of the ring's cells. Where some
+ * voxel has no value, it also matters which samples of the halo have one. */
+static void find_corners(const cwi_brick_grid *b, int axis, size_t *low, size_t *end)
+{
+    const cwi_brick_shape *s = &b->shape;
+    const size_t after = s->first[axis] + s->cells[axis] + 2;
+    *low = 1;
+    *end = s->dim[axis] + 1;
+    if (b->plan.grid.find_values)
+        return;
+    *low = s->first[axis] > 2 ? s->first[axis] - 1 : 1;
+    *end = after < *end ? after : *end;
+}
+
 cw_status cwi_brick_classify(cwi_brick_grid *b, const cwi_brick_job *job, const size_t at[3],
                              unsigned *sides, cw_error *err)
 {
-    const cwi_bit_grid *g = &b->plan.grid;
     bool in = false, out = false;
+    size_t low[3], end[3];
     const cw_status st = place_grid(b, job, at, err);
-    for (size_t k = 1; k + 1 < g->rows_z && st == CW_OK; k++)
-        b->plan.engine->classify_rows(g, 1, k, g->rows_y - 2, &in, &out);
+    for (int a = 1; a < 3; a++)
+        find_corners(b, a, &low[a], &end[a]);
+    for (size_t k = low[2]; k < end[2] && st == CW_OK; k++)
+        b->plan.engine->classify_rows(&b->plan.grid, low[1], k, end[1] - low[1], &in, &out);
     *sides = (in ? CWI_INSIDE : 0) | (out ? CWI_OUTSIDE : 0);
     return st;
 }

@@ -6,7 +6,7 @@
 #include "extract/common/field_normals.h"
 #include "extract/dense/dense_plan.h"
 
-/* What all bricks of an extraction have in common. */
+/* Data that all bricks of an extraction have in common. */
 typedef struct cwi_brick_job {
     const cwi_plan *whole; /* level, live cells and octree of the whole volume */
     const cw_extract_desc *desc;
@@ -44,7 +44,7 @@ typedef struct cwi_brick_grid {
 void cwi_brick_job_init(cwi_brick_job *job, const cwi_plan *whole, const cw_extract_desc *desc);
 
 /* Classifies the samples of the brick at[]. sides: where they are, CWI_OUTSIDE and CWI_INSIDE; also
- * those of the halo around it */
+ * those of some samples around it */
 CW_NODISCARD cw_status cwi_brick_classify(cwi_brick_grid *brick, const cwi_brick_job *job,
                                           const size_t at[3], unsigned *sides, cw_error *err);
 

@@ -29,7 +29,7 @@ static cw_box random_box(const cw_volume *v)
     return box;
 }
 
-/* What a box is painted with. */
+/* Patterns that boxes are painted with. */
 typedef enum paint_kind { CONSTANT, WAVES, NOISE, SPOTS, NOTHING, PAINTS } paint_kind;
 
 static double paint_value(paint_kind kind, const size_t at[3], double base)

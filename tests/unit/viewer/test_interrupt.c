@@ -106,7 +106,7 @@ static bool stop_at(int n, cw_scene scene, const cw_picture *expected)
 typedef struct things {
     cw_volume blobs;
     cw_transfer soft;
-    cw_mesh mesh = {0};
+    cw_mesh mesh;
 } things;
 
 static void make_things(things *t)
