@@ -231,7 +231,7 @@ typedef struct cw_brick_sink {
  * sink     called on the calling thread, by rising index; not at all if nothing differs
  * Returns  as cw_extract(); CW_ERR_ARGUMENT also for snap; CW_ERR_UNSUPPORTED for sparse and
  *          irregular grids; or what the sink returned
- * Cost     in proportion to the bricks that changed: some 20 microseconds for one that is crossed
+ * Cost     in proportion to the bricks that changed: some 30 microseconds for one that is crossed
  * Threads  the bricks, and their order, are the same to the bit for any number of threads */
 CW_NODISCARD CW_API cw_status cw_extractor_extract_changed(cw_extractor *extractor,
                                                            const cw_extract_desc *desc,
