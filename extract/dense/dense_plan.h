@@ -4,6 +4,7 @@
 
 #include "extract/dense/isa_dispatch.h"
 
+/* Kept by an extractor from one extraction to the next. */
 typedef struct cwi_plan {
     const cwi_engine *engine;
     cwi_bit_grid grid;

@@ -359,7 +359,9 @@ class Extractor:
                 self._user = 0
 
     def update(self, box: tuple[slice, slice, slice] | None = None) -> None:
-        """Tells that values of the volume have changed, after they were written.
+        """Tells that values of volume.array have changed, after they were written.
+
+        That is the array that the volume was made of, unless it had to be copied.
 
         box  the slices along z, y, x that were written to, such as np.s_[8:16, 0:4, :]; None: all
 

@@ -151,7 +151,7 @@ static void so_they_are_on_cubics(void **state)
                                        cw_field_stored(CW_FIELD_GYROID, (cw_type)type, 0.1),
                                    .cubic_placement = true};
         test_turn(&v, type);
-        cw_mesh many = test_extract(&v, &d, NULL), one;
+        cw_mesh many = test_extract(&v, &d, NULL), one = {0};
         cwi_engine engine = *cwi_engine_at(0);
         engine.write_span = write_one_at_a_time;
         assert_ok(cwi_extract_with(&engine, &v, &d, &one, NULL, &err), err);

@@ -357,7 +357,7 @@ static void a_mesh_runs_through_the_same_stages(void **state)
                           .close_handles = &handles,
                           .simplify = cw_simplify_available() ? &simplify : NULL};
     taken t = {0};
-    cw_mesh mesh, expected, empty = {0};
+    cw_mesh mesh = {0}, expected = {0}, empty = {0};
     cw_pipeline_facts facts = {0};
     cw_error err = {0};
     assert_ok(cw_extract(&volume, &d.extract, &mesh, NULL, &err), err);

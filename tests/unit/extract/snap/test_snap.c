@@ -359,7 +359,7 @@ static void check_threads_and_engines(cw_extract_desc d)
     cw_volume v = noise();
     cw_error err = {0};
     cw_extract_counts one_counts, counts;
-    cw_mesh one = test_extract(&v, &d, &one_counts), other;
+    cw_mesh one = test_extract(&v, &d, &one_counts), other = {0};
     for (int n = 2; n < 9; n += 3) {
         d.threads = n;
         other = test_extract(&v, &d, &counts);
@@ -394,7 +394,7 @@ static void an_extractor_snaps_the_same(void **state)
     assert_ok(cw_extractor_new(&v, &e, &err), err);
     for (int iso = -8; iso <= 8; iso += test_is_short() ? 6 : 2) {
         const cw_extract_desc d = {.isovalue = iso, .snap = 0.4, .leave_open = iso % 4 == 0};
-        cw_mesh once = test_extract(&v, &d, NULL), again;
+        cw_mesh once = test_extract(&v, &d, NULL), again = {0};
         assert_ok(cw_extractor_extract(e, &d, &again, NULL, &err), err);
         test_assert_same_mesh(&once, &again);
         cw_mesh_free(&once);

@@ -219,7 +219,7 @@ static void test_extractor_and_slabs(void **state)
     assert_ok(cw_extractor_new(&sparse, &e, &err), err);
     for (int n = -2; n <= 2; n++) {
         const cw_extract_desc d = {.isovalue = n};
-        cw_mesh whole = test_extract(&sparse, &d, NULL), m;
+        cw_mesh whole = test_extract(&sparse, &d, NULL), m = {0};
         assert_ok(cw_extractor_extract(e, &d, &m, NULL, &err), err);
         test_assert_same_mesh(&whole, &m);
         cw_mesh_free(&whole);

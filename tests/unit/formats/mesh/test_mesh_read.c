@@ -13,6 +13,7 @@ static void make_full_mesh(cw_mesh *mesh)
     assert_ok(cw_field_sample(&desc, &v, &err), err);
     for (int a = 0; a < 3; a++)
         v.affine[a][3] = 123.456 * (a + 1);
+    *mesh = (cw_mesh){0};
     assert_ok(cw_extract(&v, NULL, mesh, NULL, &err), err);
     cw_volume_free(&v);
     mesh->colors = malloc(4 * mesh->vertex_count);
