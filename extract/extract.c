@@ -113,11 +113,22 @@ static cw_status write_mesh(cwi_plan *p, const cw_extract_desc *d, cw_mesh *mesh
     return st;
 }
 
+/* Empties a mesh, and keeps its arrays for the next surface. */
+static void take_arrays(cwi_plan *p, cw_mesh *mesh)
+{
+    if (mesh->positions && cwi_plan_is_dense(p)) {
+        cw_mesh_free(&p->spare);
+        p->spare = *mesh;
+        *mesh = (cw_mesh){0};
+    }
+    cw_mesh_free(mesh);
+}
+
 static cw_status extract_planned(cwi_plan *p, const cw_extract_desc *desc, cw_mesh *mesh,
                                  cw_extract_counts *counts, cw_error *err)
 {
     const cw_extract_desc d = desc ? *desc : (cw_extract_desc){0};
-    memset(mesh, 0, sizeof *mesh);
+    take_arrays(p, mesh);
     cw_status st = cwi_plan_is_dense(p) ? cwi_plan_make(p, &d, err)
                                         : cwi_extract_at_once(p, &d, mesh, err);
     if (st == CW_OK && p->counts.triangles && cwi_plan_is_dense(p))
@@ -145,10 +156,11 @@ cw_status cwi_extract_with(const cwi_engine *engine, const cw_volume *volume,
                            cw_extract_counts *counts, cw_error *err)
 {
     cwi_plan p;
-    memset(mesh, 0, sizeof *mesh);
     cw_status st = cwi_plan_init(&p, engine, volume, err);
     if (st == CW_OK)
         st = extract_planned(&p, desc, mesh, counts, err);
+    else
+        cw_mesh_free(mesh);
     cwi_plan_free(&p);
     return st;
 }
@@ -177,14 +189,15 @@ cw_status cw_extract_predict(const cw_volume *volume, const cw_extract_desc *des
 cw_status cwi_extractor_new_with(const cwi_engine *engine, size_t leaf_bytes,
                                  const cw_volume *volume, cw_extractor **out, cw_error *err)
 {
-    cw_extractor *e = cwi_alloc_array(1, sizeof *e);
+    cw_extractor *e = cwi_alloc_zeroed(1, sizeof *e);
     *out = NULL;
     if (!e)
         return cwi_fail_memory(err);
-    cw_status st = cwi_plan_init(e, engine, volume, err);
-    if (st == CW_OK && cwi_plan_is_dense(e))
-        st = cwi_octree_init(&e->tree, &e->grid, err);
-    e->tree.leaf_bytes = leaf_bytes;
+    cw_status st = cwi_plan_init(&e->plan, engine, volume, err);
+    if (st == CW_OK && cwi_plan_is_dense(&e->plan))
+        st = cwi_octree_init(&e->plan.tree, &e->plan.grid, err);
+    e->plan.tree.leaf_bytes = leaf_bytes;
+    e->has_nodata = e->plan.grid.volume.has_nodata;
     if (st == CW_OK)
         *out = e;
     else
@@ -200,8 +213,10 @@ cw_status cw_extractor_new(const cw_volume *volume, cw_extractor **out, cw_error
 
 void cw_extractor_free(cw_extractor *e)
 {
-    if (e)
-        cwi_plan_free(e);
+    if (!e)
+        return;
+    cwi_plan_free(&e->plan);
+    cwi_bricks_free(&e->bricks);
     cwi_free(e);
 }
 
@@ -210,19 +225,13 @@ cw_status cw_extractor_extract(cw_extractor *e, const cw_extract_desc *desc, cw_
 {
     CWI_REQUIRE(err, e, mesh);
     CWI_REQUIRE_VERSION(err, desc, 0);
-    return extract_planned(e, desc, mesh, counts, err);
+    return extract_planned(&e->plan, desc, mesh, counts, err);
 }
 
 void cw_extractor_recycle(cw_extractor *e, cw_mesh *mesh)
 {
-    if (!e || !mesh)
-        return;
-    if (mesh->positions) {
-        cw_mesh_free(&e->spare);
-        e->spare = *mesh;
-        *mesh = (cw_mesh){0};
-    }
-    cw_mesh_free(mesh);
+    if (e && mesh)
+        take_arrays(&e->plan, mesh);
 }
 
 cw_status cw_extractor_predict(cw_extractor *e, const cw_extract_desc *desc,
@@ -230,5 +239,5 @@ cw_status cw_extractor_predict(cw_extractor *e, const cw_extract_desc *desc,
 {
     CWI_REQUIRE(err, e);
     CWI_REQUIRE_VERSION(err, desc, 0);
-    return predict_planned(e, desc, counts, err);
+    return predict_planned(&e->plan, desc, counts, err);
 }

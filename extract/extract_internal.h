@@ -2,7 +2,14 @@
 #ifndef EXTRACT_EXTRACT_INTERNAL_H
 #define EXTRACT_EXTRACT_INTERNAL_H
 
+#include "extract/bricks/brick_set.h"
 #include "extract/dense/dense_plan.h"
+
+struct cw_extractor {
+    cwi_plan plan;
+    bool has_nodata; /* as the volume was given: the plan's is false while no voxel equals it */
+    cwi_brick_set bricks; /* empty until changed bricks are asked for */
+};
 
 /* Makes a zeroed plan for a volume of any kind; free it with cwi_plan_free(). */
 CW_NODISCARD cw_status cwi_plan_init(cwi_plan *plan, const cwi_engine *engine,

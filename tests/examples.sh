@@ -52,6 +52,12 @@ for value in 0.2 0.4; do
     cmp level_$value.ply again/level_$value.ply
 done
 
+moving_surface moving.ply | tee printed
+closed moving.ply
+grep -q '^ball 7: [1-9][0-9]* of 343 bricks replaced' printed || fail "no brick was replaced"
+awk '/in the whole surface/ { exit $1 != $6 }' printed || fail "bricks are not the surface"
+grep -q '2 components' checked || fail "the wave and the ball are two components"
+
 if needs simplify simplify_and_check sphere.nrrd 0 0.05 small.stl; then
     grep -q '^closed manifold' printed || fail "the simplified sphere is not closed"
     closed small.stl
@@ -107,4 +113,4 @@ for place in $places; do
     [ $code = 6 ] && grep -q "(memory): the receiver is gone" error || fail "a full disk gives exit code $code"
 done
 
-echo "seven examples were built against the installed library, and they work"
+echo "eight examples were built against the installed library, and they work"

@@ -62,7 +62,7 @@ cw_status view_need_surface(view *v, view_level level, cw_error *err)
     view_surface *surface = &v->document.surface;
     const render_args *args = &v->state.args;
     const bool coarse = level == VIEW_ROUGH && v->state.is_placed && can_thin(v);
-    cw_mesh mesh;
+    cw_mesh mesh = {0};
     if (view_shows_surfaces(v) && v->picture.mode == CW_MODE_MESH) {
         view_hide_pieces(v);
         return view_need_label_mesh(v, err);

@@ -94,6 +94,19 @@ void cwi_find_live_layer(const cwi_bit_grid *g, size_t k)
     }
 }
 
+void cwi_find_window(const cwi_bit_grid *g, uint64_t *window)
+{
+    for (size_t row = 0; row < g->rows; row++) {
+        uint64_t any = 0;
+        for (int axis = 0; axis < 3; axis++) {
+            const uint64_t edges = cwi_live_edges(g, axis, row % g->rows_y, row / g->rows_y, 0);
+            window[((size_t)axis + 1) * g->rows + row] = edges;
+            any |= edges;
+        }
+        window[row] = any;
+    }
+}
+
 /* Clears cells of a row: the cells in `cells`, and with `before` each one's neighbour at i
  * - 1. */
 static void clear_cells(uint64_t *row, size_t w, uint64_t cells, bool before)
@@ -247,7 +260,7 @@ static cw_status plan_classification(classification *c, cwi_bit_grid *g, cwi_oct
         g->leaves = cwi_alloc_array(bricks * g->words, sizeof *g->leaves);
     if (tree && (!g->active || !g->leaves))
         return cwi_fail_memory(err);
-    c->grow = tree && !tree->grown ? tree : NULL;
+    c->grow = tree && !tree->grown && !tree->waits ? tree : NULL;
     g->all_classified = !tree || !tree->grown;
     if (!g->all_classified)
         g->all_classified = cwi_octree_mark(tree, g) * tree->leaf_bytes >
@@ -275,10 +288,42 @@ static cw_status compare_samples(classification *c, cwi_bit_grid *g,
         cwi_octree_grow(c->grow);
     c->grow = NULL;
     if (st == CW_OK && g->all_classified) {
+        g->gaps_known = true;
         g->has_gaps = any_gap(g);
         g->volume.has_nodata = g->volume.has_nodata && g->has_gaps;
     }
     return st;
+}
+
+static void forget_values(cwi_bit_grid *g)
+{
+    cwi_free(g->has);
+    g->has = NULL;
+}
+
+void cwi_grid_forget(cwi_bit_grid *g, bool nodata)
+{
+    forget_values(g);
+    g->gaps_known = g->has_gaps = false;
+    g->volume.has_nodata = nodata;
+}
+
+/* The planes hold no surface between two extractions, so `inside` may be written over. */
+void cwi_grid_update(cwi_bit_grid *g, const cwi_engine *engine, const cw_box *box, bool nodata)
+{
+    const bool is_float = g->volume.type == CW_F32 || g->volume.type == CW_F64;
+    bool in = false, out = false;
+    if (!g->gaps_known || (!nodata && !is_float))
+        return;
+    g->volume.has_nodata = nodata;
+    g->find_values = g->has != NULL;
+    for (size_t k = box->first[2]; k < box->first[2] + box->count[2]; k++)
+        engine->classify_rows(g, box->first[1] + 1, k + 1, box->count[1], &in, &out);
+    g->find_values = false;
+    g->has_gaps = any_gap(g);
+    g->volume.has_nodata = nodata && g->has_gaps;
+    if (!g->has_gaps)
+        forget_values(g);
 }
 
 /* Compares all samples, and finds those that have values. */
@@ -305,6 +350,8 @@ cw_status cwi_grid_classify(cwi_bit_grid *g, const cwi_engine *engine, cwi_octre
     cw_status st = cwi_grid_set_level(g, desc, err);
     if (st == CW_OK)
         st = plan_classification(&c, g, tree, err);
+    if (tree && st == CW_OK)
+        tree->waits = false;
     const bool at_once = g->volume.has_nodata && !g->has;
     if (st == CW_OK && !at_once)
         st = compare_samples(&c, g, desc, err);

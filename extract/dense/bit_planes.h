@@ -78,7 +78,8 @@ typedef struct cwi_bit_grid {
         *active; /* bricks_z x bricks_y x masks: words with cells the octree cannot rule out */
     cwi_leaf_bits
         *leaves;      /* bricks_z x bricks_y x words: of wanted words, and those after them */
-    bool has_gaps;    /* some voxel has no value: known once everything was wanted */
+    bool gaps_known;  /* everything was wanted once, so has_gaps is known */
+    bool has_gaps;    /* some voxel has no value */
     bool live_is_box; /* the live cells are all but those of padding */
     bool find_values; /* `has` is filled while samples are compared */
     bool all_classified; /* all words are wanted; else the others mean nothing in the planes */
@@ -107,6 +108,14 @@ CW_NODISCARD cw_status cwi_grid_classify(cwi_bit_grid *grid, const cwi_engine *e
                                          cw_error *err);
 size_t cwi_grid_bytes(const cwi_bit_grid *grid);
 
+/* Takes note that all voxels have changed. nodata: voxels may have no value, as the volume was
+ * given */
+void cwi_grid_forget(cwi_bit_grid *grid, bool nodata);
+
+/* Takes note that the voxels in a box have changed, and finds those without value. nodata: as above */
+void cwi_grid_update(cwi_bit_grid *grid, const cwi_engine *engine, const cw_box *box,
+                     bool nodata);
+
 /* Sets the isovalue, as a stored number, and its inside: these are the same for every
  * sample. */
 CW_NODISCARD cw_status cwi_grid_set_level(cwi_bit_grid *grid, const cw_extract_desc *desc,
@@ -118,6 +127,10 @@ CW_NODISCARD cw_status cwi_grid_set_live(cwi_bit_grid *grid, bool leave_open, cw
 
 /* Finds the cells of a layer all of whose samples have values. */
 void cwi_find_live_layer(const cwi_bit_grid *grid, size_t layer);
+
+/* Finds the four planes of g->window from the live cells. The grid's rows are one word.
+ * window  4 x rows words */
+void cwi_find_window(const cwi_bit_grid *grid, uint64_t *window);
 
 /* Drops the cells of a layer, 1 or above, and of the one below it that share nothing but a crossed
  * edge: two live ones, diagonal, while the other two are dead. Both would put triangles at its

@@ -272,18 +272,34 @@ static void classify_bricks(const cwi_bit_grid *g, size_t b)
     }
 }
 
+static void (*const measure[CW_TYPE_COUNT])(const cwi_bit_grid *, const size_t[2], size_t,
+                                            size_t, cwi_range *) = {
+    [CW_U8] = measure_u8,   [CW_I8] = measure_i8,   [CW_U16] = measure_u16,
+    [CW_I16] = measure_i16, [CW_U32] = measure_u32, [CW_I32] = measure_i32,
+    [CW_F32] = measure_f32, [CW_F64] = measure_f64,
+};
+
+/* Returns the number of leaves along x. */
+static size_t count_leaves_x(const cwi_bit_grid *g)
+{
+    return (g->volume.dim[0] + CWI_BRICK) / CWI_BRICK;
+}
+
+void cwi_measure_leaves(const cwi_bit_grid *g, const cwi_leaf_box *box, cwi_range *leaves)
+{
+    enum { IN_WORD = 64 / CWI_BRICK };
+    const size_t words[2] = {box->first[0] / IN_WORD, (box->end[0] + IN_WORD - 1) / IN_WORD};
+    for (size_t kb = box->first[2]; kb < box->end[2]; kb++)
+        for (size_t jb = box->first[1]; jb < box->end[1]; jb++)
+            measure[g->volume.type](g, words, jb, kb,
+                                    leaves + (kb * g->bricks_y + jb) * count_leaves_x(g));
+}
+
 void cwi_classify_layer(const cwi_bit_grid *g, size_t b, cwi_range *leaves, bool *in, bool *out)
 {
-    static void (*const measure[CW_TYPE_COUNT])(const cwi_bit_grid *, size_t, size_t,
-                                                cwi_range *) = {
-        [CW_U8] = measure_u8,   [CW_I8] = measure_i8,   [CW_U16] = measure_u16,
-        [CW_I16] = measure_i16, [CW_U32] = measure_u32, [CW_I32] = measure_i32,
-        [CW_F32] = measure_f32, [CW_F64] = measure_f64,
-    };
-    const cw_type type = g->volume.type;
     const size_t begin = b * CWI_BRICK;
     const size_t end = b + 1 == g->bricks_z ? g->rows_z : begin + CWI_BRICK;
-    const size_t leaves_x = (g->volume.dim[0] + CWI_BRICK) / CWI_BRICK;
+    const size_t leaves_x = count_leaves_x(g), words[2] = {0, g->volume.dim[0] / 64 + 1};
     if (!g->all_classified) {
         classify_bricks(g, b);
         return;
@@ -305,7 +321,7 @@ void cwi_classify_layer(const cwi_bit_grid *g, size_t b, cwi_range *leaves, bool
         for (size_t k = begin ? begin : 1; k < end && k + 1 < g->rows_z; k++)
             cwi_classify_rows(g, first, k, last - first, in, out);
         for (size_t row = jb; row < next && leaves; row++)
-            measure[type](g, row, b, leaves + row * leaves_x);
+            measure[g->volume.type](g, words, row, b, leaves + row * leaves_x);
     }
 }
 

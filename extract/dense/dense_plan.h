@@ -4,8 +4,8 @@
 
 #include "extract/dense/isa_dispatch.h"
 
-/* Also what an extractor keeps from one extraction to the next. */
-typedef struct cw_extractor {
+/* Kept by an extractor from one extraction to the next. */
+typedef struct cwi_plan {
     const cwi_engine *engine;
     cwi_bit_grid grid;
     cwi_octree tree; /* no levels: no tree is wanted */

@@ -38,6 +38,7 @@ static bool has_avx512(void)
                                      bool *);                                                  \
     void cwi_classify_rows_##engine(const cwi_bit_grid *, size_t, size_t, size_t, bool *,      \
                                     bool *);                                                   \
+    void cwi_measure_leaves_##engine(const cwi_bit_grid *, const cwi_leaf_box *, cwi_range *); \
     void cwi_find_sides_##engine(const cwi_bit_grid *, const void *, size_t, bool *, bool *);  \
     void cwi_count_layer_##engine(const cwi_bit_grid *, size_t, cwi_row *);                    \
     void cwi_write_span_##engine(const cwi_bit_grid *, const cwi_row_span *, const cwi_row *,  \
@@ -50,6 +51,7 @@ static const cwi_engine engines[] = {
      test,                                                                                     \
      cwi_classify_layer_##compare,                                                             \
      cwi_classify_rows_##compare,                                                              \
+     cwi_measure_leaves_##compare,                                                             \
      cwi_find_sides_##compare,                                                                 \
      cwi_count_layer_##march,                                                                  \
      cwi_write_span_##march},

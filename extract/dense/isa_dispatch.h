@@ -61,6 +61,10 @@ struct cwi_engine {
      * Reports `in` and `out` as classify_layer does. */
     void (*classify_rows)(const cwi_bit_grid *grid, size_t j, size_t k, size_t rows, bool *in,
                           bool *out);
+    /* Finds the ranges of some of a tree's leaves again, and those of the leaves in the same words.
+     * leaves: all of the tree's, level 0 */
+    void (*measure_leaves)(const cwi_bit_grid *grid, const cwi_leaf_box *box,
+                           cwi_range *leaves);
     /* Sets `in` if some of `count` packed voxels, a multiple of 64, are inside, and `out` if
      * some are not. Clears neither. */
     void (*find_sides)(const cwi_bit_grid *grid, const void *voxels, size_t count, bool *in,
@@ -92,6 +96,7 @@ const cwi_engine *cwi_engine_best(void);
 #define CWI_OF_ENGINE(a)   CWI_EXPAND(a, CWI_ENGINE)
 #define cwi_classify_layer CWI_OF_ENGINE(cwi_classify_layer)
 #define cwi_classify_rows  CWI_OF_ENGINE(cwi_classify_rows)
+#define cwi_measure_leaves CWI_OF_ENGINE(cwi_measure_leaves)
 #define cwi_find_sides     CWI_OF_ENGINE(cwi_find_sides)
 #define cwi_count_layer    CWI_OF_ENGINE(cwi_count_layer)
 #define cwi_write_span     CWI_OF_ENGINE(cwi_write_span)
@@ -101,6 +106,7 @@ void cwi_classify_layer(const cwi_bit_grid *grid, size_t b, cwi_range *leaves, b
                         bool *out);
 void cwi_classify_rows(const cwi_bit_grid *grid, size_t j, size_t k, size_t rows, bool *in,
                        bool *out);
+void cwi_measure_leaves(const cwi_bit_grid *grid, const cwi_leaf_box *box, cwi_range *leaves);
 void cwi_find_sides(const cwi_bit_grid *grid, const void *voxels, size_t count, bool *in,
                     bool *out);
 void cwi_count_layer(const cwi_bit_grid *grid, size_t k, cwi_row *rows);

@@ -50,7 +50,7 @@ size_t cwi_octree_bytes(const cwi_octree *t)
     return bricks * sizeof(cwi_range);
 }
 
-static const cwi_range *node_at(const cwi_octree *t, int level, size_t x, size_t y, size_t z)
+static cwi_range *node_at(const cwi_octree *t, int level, size_t x, size_t y, size_t z)
 {
     return t->level[level] + (z * t->dim[level][1] + y) * t->dim[level][0] + x;
 }
@@ -74,16 +74,27 @@ static cwi_range join_children(const cwi_octree *t, int l, const size_t at[3])
     return r;
 }
 
+void cwi_octree_update(cwi_octree *t, const cwi_leaf_box *leaves)
+{
+    cwi_leaf_box box = *leaves;
+    for (int l = 1; l < t->levels; l++) {
+        size_t at[3];
+        for (int a = 0; a < 3; a++) {
+            box.first[a] /= 2;
+            box.end[a] = halve_count(box.end[a]);
+        }
+        for (at[2] = box.first[2]; at[2] < box.end[2]; at[2]++)
+            for (at[1] = box.first[1]; at[1] < box.end[1]; at[1]++)
+                for (at[0] = box.first[0]; at[0] < box.end[0]; at[0]++)
+                    *node_at(t, l, at[0], at[1], at[2]) = join_children(t, l, at);
+    }
+}
+
 void cwi_octree_grow(cwi_octree *t)
 {
-    for (int l = 1; l < t->levels; l++) {
-        cwi_range *range = t->level[l];
-        size_t at[3];
-        for (at[2] = 0; at[2] < t->dim[l][2]; at[2]++)
-            for (at[1] = 0; at[1] < t->dim[l][1]; at[1]++)
-                for (at[0] = 0; at[0] < t->dim[l][0]; at[0]++)
-                    *range++ = join_children(t, l, at);
-    }
+    cwi_leaf_box all = {.first = {0}};
+    memcpy(all.end, t->dim[0], sizeof all.end);
+    cwi_octree_update(t, &all);
     t->grown = true;
 }
 
@@ -110,6 +121,23 @@ static bool straddles_level(const cwi_range *r, const cwi_bit_grid *g)
     bool in, out;
     find_sides(r, g, &in, &out);
     return in && (out || r->gap);
+}
+
+unsigned cwi_octree_sides(const cwi_octree *t, const cwi_bit_grid *g,
+                          const cwi_leaf_box *leaves, bool *straddles)
+{
+    unsigned sides = 0;
+    *straddles = false;
+    for (size_t z = leaves->first[2]; z < leaves->end[2]; z++)
+        for (size_t y = leaves->first[1]; y < leaves->end[1]; y++)
+            for (size_t x = leaves->first[0]; x < leaves->end[0]; x++) {
+                const cwi_range *range = node_at(t, 0, x, y, z);
+                bool in, out;
+                find_sides(range, g, &in, &out);
+                sides |= (in ? CWI_INSIDE : 0) | (out ? CWI_OUTSIDE : 0);
+                *straddles = *straddles || straddles_level(range, g);
+            }
+    return sides;
 }
 
 static size_t mark_below(const cwi_octree *t, int l, const size_t at[3], cwi_bit_grid *g)

@@ -18,7 +18,8 @@ typedef struct cwi_range {
 } cwi_range;
 
 struct cwi_octree {
-    bool grown;        /* the nodes hold ranges */
+    bool grown; /* the nodes hold ranges */
+    bool waits; /* the next surface does not grow it: the voxels may change again first */
     size_t leaf_bytes; /* time to read a leaf by itself, in bytes a sample of reading whole
                           rows; when the wanted leaves cost more than all samples, all samples
                           are read */
@@ -35,6 +36,19 @@ size_t cwi_octree_bytes(const cwi_octree *tree);
 
 /* Makes the levels above the leaves, whose ranges are known. */
 void cwi_octree_grow(cwi_octree *tree);
+
+/* A box of leaves: those from first[] to end[] - 1 along each axis. */
+typedef struct cwi_leaf_box {
+    size_t first[3], end[3];
+} cwi_leaf_box;
+
+/* Makes the nodes above some leaves again, whose ranges have changed. */
+void cwi_octree_update(cwi_octree *tree, const cwi_leaf_box *leaves);
+
+/* Returns the sides on which numbers in some leaves are: CWI_OUTSIDE and CWI_INSIDE. straddles: set
+ * if a surface may pass through one of them */
+unsigned cwi_octree_sides(const cwi_octree *tree, const cwi_bit_grid *grid,
+                          const cwi_leaf_box *leaves, bool *straddles);
 
 /* Returns true if some numbers are inside and some are not. */
 bool cwi_octree_crossed(const cwi_octree *tree, const cwi_bit_grid *grid);

@@ -137,6 +137,7 @@ static cw_status take_surface(hollowing *h, double isovalue, bool normals, cw_me
                                   .threads = h->desc->threads,
                                   .max_bytes = h->desc->max_bytes,
                                   .progress = h->desc->progress};
+    *out = (cw_mesh){0};
     const cw_status st = cw_extract(&h->volume, &desc, out, NULL, err);
     if (st == CW_OK)
         cwi_level_set_round(out, h->mesh->origin);

@@ -54,6 +54,7 @@ static cw_status take_surface(const making *m, const cw_volume *volume, bool sim
                                   .threads = d->threads,
                                   .max_bytes = d->max_bytes,
                                   .progress = d->progress};
+    *out = (cw_mesh){0};
     const cw_status st = cw_extract(volume, &desc, out, NULL, err);
     if (st == CW_OK)
         cwi_level_set_round(out, m->mesh->origin);

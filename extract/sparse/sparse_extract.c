@@ -309,15 +309,7 @@ static cw_status set_window(cwi_bit_grid *g, size_t first, cw_error *err)
         return cwi_fail_memory(err);
     }
     set_live(g, first);
-    for (size_t row = 0; row < g->rows; row++) {
-        uint64_t any = 0;
-        for (int axis = 0; axis < 3; axis++) {
-            const uint64_t edges = cwi_live_edges(g, axis, row % g->rows_y, row / g->rows_y, 0);
-            window[((size_t)axis + 1) * g->rows + row] = edges;
-            any |= edges;
-        }
-        window[row] = any;
-    }
+    cwi_find_window(g, window);
     g->window = window;
     return CW_OK;
 }

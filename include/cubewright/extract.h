@@ -95,7 +95,8 @@ typedef struct cw_extract_counts {
  *
  * volume   borrowed; at least 2 voxels along each axis; first component and step are used
  * desc     borrowed; NULL means all defaults
- * mesh     filled on success, emptied on failure; free it with cw_mesh_free()
+ * mesh     zeroed, or filled by an earlier call, whose arrays are then written over or freed.
+ *          Filled on success, emptied on failure; free it with cw_mesh_free()
  * counts   what was made; may be NULL
  * err      may be NULL
  *
@@ -144,10 +145,10 @@ CW_NODISCARD CW_API cw_status cw_extract_predict(const cw_volume *volume,
                                                  const cw_extract_desc *desc,
                                                  cw_extract_counts *counts, cw_error *err);
 
-/* An extractor for several surfaces of one volume. On dense grids the first extraction reads
- * all voxels and builds an octree of the minimum and maximum value in each brick of 8 x 8 x 8
- * cells. Later extractions read only the bricks that their isovalue passes through. Meshes are
- * the same to the bit as those of cw_extract().
+/* An extractor for several surfaces of one volume, at several isovalues or while the volume
+ * changes. On dense grids the first extraction reads all voxels and builds an octree of the minimum
+ * and maximum value in each brick of 8 x 8 x 8 cells. Later extractions read only the bricks that
+ * their isovalue passes through. Meshes are the same to the bit as those of cw_extract().
  *
  * For an irregular grid nothing is kept: each surface is extracted from the start.
  *
@@ -156,8 +157,8 @@ CW_NODISCARD CW_API cw_status cw_extract_predict(const cw_volume *volume,
  * Source  [Wilhelms1992] */
 typedef struct cw_extractor cw_extractor;
 
-/* Prepares to extract from a volume, which is borrowed. It must stay unchanged until the
- * extractor is freed.
+/* Prepares to extract from a volume, which is borrowed until the extractor is freed. Each change of
+ * its voxels meanwhile has to be told by cw_extractor_update(). Nothing else of it may change.
  * out      set to the extractor; free it with cw_extractor_free()
  * Returns  as cw_extract() */
 CW_NODISCARD CW_API cw_status cw_extractor_new(const cw_volume *volume, cw_extractor **out,
@@ -166,8 +167,23 @@ CW_NODISCARD CW_API cw_status cw_extractor_new(const cw_volume *volume, cw_extra
 /* Frees an extractor, and the meshes that it took back. Harmless on NULL. */
 CW_API void cw_extractor_free(cw_extractor *extractor);
 
+/* Tells that voxels have changed, before the next extraction and after they were written. The
+ * octree is brought up to date for the bricks around a box. If all voxels have changed, or more
+ * than an eighth of them, the next extraction reads all, without building the octree; one more
+ * without a change in between builds it again. Several boxes take several calls.
+ *
+ * box      the voxels that may have changed; NULL: all
+ * Returns  CW_ERR_ARGUMENT  the box is empty or leaves the volume;
+ *          CW_ERR_UNSUPPORTED  a box of an irregular grid
+ * Cost     reads the bricks around the box, and whole rows of voxels through it where voxels may
+ *          lack a value (floats, no-data) */
+CW_NODISCARD CW_API cw_status cw_extractor_update(cw_extractor *extractor, const cw_box *box,
+                                                  cw_error *err);
+
 /* Extracts and predicts as cw_extract() and cw_extract_predict().
- * mesh     filled on success, emptied on failure; free it with cw_mesh_free()
+ * mesh     zeroed, or filled by an earlier call: a mesh that is given again for each frame is
+ *          written to the same arrays. Filled on success, emptied on failure; free it with
+ *          cw_mesh_free()
  * Returns  as cw_extract() */
 CW_NODISCARD CW_API cw_status cw_extractor_extract(cw_extractor *extractor,
                                                    const cw_extract_desc *desc, cw_mesh *mesh,
@@ -175,6 +191,51 @@ CW_NODISCARD CW_API cw_status cw_extractor_extract(cw_extractor *extractor,
 CW_NODISCARD CW_API cw_status cw_extractor_predict(cw_extractor *extractor,
                                                    const cw_extract_desc *desc,
                                                    cw_extract_counts *counts, cw_error *err);
+
+/* The edge, in cells, of the bricks of cw_extractor_extract_changed(). */
+#define CW_EXTRACT_BRICK 16
+
+/* The part of a surface in one brick of cells. Brick (i, j, k) has the 16 x 16 x 16 cells from
+ * voxel 16 i - 1 to voxel 16 i + 15 along x, and so on; voxels -1 and dim are beyond the border,
+ * where the caps stand. */
+typedef struct cw_brick {
+    const cw_mesh *mesh; /* its triangles, with vertices of its own; without any: the surface no
+                            longer passes through the brick. All bricks have the same origin */
+    size_t at[3];        /* its place among the bricks along x, y and z */
+    size_t count[3];     /* bricks of the volume along x, y and z */
+    size_t index;        /* at[0] + count[0] * (at[1] + count[1] * at[2]) */
+} cw_brick;
+
+/* A receiver of bricks, one after the other. A status other than CW_OK stops the maker, which then
+ * returns it. The brick belongs to the maker and is invalid after the call. */
+typedef struct cw_brick_sink {
+    /* Takes one brick, on the calling thread. It may not call the extractor. */
+    cw_status (*take)(void *user, const cw_brick *brick, cw_error *err);
+    void *user; /* passed to take */
+} cw_brick_sink;
+
+/* Extracts the bricks of the surface that may differ from what was given before: the first time,
+ * and with another isovalue or other options, all that have a surface; then those around voxels
+ * that cw_extractor_update() told of. A renderer keeps one set of buffers for each brick, and
+ * replaces those of the bricks that it is given. Together its buffers are then the surface of
+ * cw_extract(): the same triangles and positions and normals to the bit, so that bricks fit
+ * together without gaps. Vertices on the faces between bricks are in each of them. A brick that
+ * was not taken, as the sink failed or the call was cancelled, is given again next time.
+ *
+ * With leave_open, where voxels have no value, any change gives all bricks: which cells are left
+ * out there may depend on voxels far away.
+ *
+ * desc     as in cw_extract(), but without snap. max_triangles and extra_bytes are for the bricks
+ *          of one call, max_bytes also for the memory of up to 64 bricks at a time. Limits are
+ *          checked when bricks are made, before they are given
+ * sink     called on the calling thread, by rising index; not at all if nothing differs
+ * Returns  as cw_extract(); CW_ERR_ARGUMENT also for snap; CW_ERR_UNSUPPORTED for sparse and
+ *          irregular grids; or what the sink returned
+ * Cost     in proportion to the bricks that changed: some 30 microseconds for one that is crossed
+ * Threads  the bricks, and their order, are the same to the bit for any number of threads */
+CW_NODISCARD CW_API cw_status cw_extractor_extract_changed(cw_extractor *extractor,
+                                                           const cw_extract_desc *desc,
+                                                           cw_brick_sink sink, cw_error *err);
 
 /* Takes back a mesh of this extractor or any other, instead of cw_mesh_free(). The next
  * surface is written to its memory, so the system need not clear and hand out new pages. This

@@ -22,6 +22,7 @@ from ._cut import Cut, cut
 from ._engrave import Engraved, engrave
 from ._errors import Error, Status
 from ._extract import (
+    Brick,
     Extractor,
     LabelChange,
     LabelSurfaces,
@@ -57,6 +58,7 @@ __all__ = [
     "Appearance",
     "Atlas",
     "Baked",
+    "Brick",
     "Check",
     "Closed",
     "Combined",

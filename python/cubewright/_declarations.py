@@ -52,6 +52,7 @@ CW_APPEARANCE_MAX_VIEWS = 64
 CW_CAP_ANGLE_DEG = 160.0
 CW_CORNER_NORMALS = 'corner_normals'
 CW_ENGRAVE_CHARACTERS = 400
+CW_EXTRACT_BRICK = 16
 CW_EXTRACT_MAX_SNAP = 0.5
 CW_FACE_COLORS = 'face_colors'
 CW_FEM_MAX_ASPECT = 10.0
@@ -1376,6 +1377,32 @@ cw_extract_counts._fields_ = [
 
 class cw_extractor(Structure):
     pass
+
+
+class cw_brick(Structure):
+    mesh: Any
+    at: Any
+    count: Any
+    index: int
+
+
+cw_brick._fields_ = [
+    ("mesh", POINTER(cw_mesh)),
+    ("at", c_size_t * 3),
+    ("count", c_size_t * 3),
+    ("index", c_size_t),
+]
+
+
+class cw_brick_sink(Structure):
+    take: Any
+    user: Any
+
+
+cw_brick_sink._fields_ = [
+    ("take", CFUNCTYPE(c_int, c_void_p, POINTER(cw_brick), POINTER(cw_error))),
+    ("user", c_void_p),
+]
 
 
 class cw_normals_desc(Structure):
@@ -4481,8 +4508,10 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "cw_extract_predict": (c_int, [POINTER(cw_volume), POINTER(cw_extract_desc), POINTER(cw_extract_counts), POINTER(cw_error)]),
     "cw_extractor_new": (c_int, [POINTER(cw_volume), POINTER(POINTER(cw_extractor)), POINTER(cw_error)]),
     "cw_extractor_free": (None, [POINTER(cw_extractor)]),
+    "cw_extractor_update": (c_int, [POINTER(cw_extractor), POINTER(cw_box), POINTER(cw_error)]),
     "cw_extractor_extract": (c_int, [POINTER(cw_extractor), POINTER(cw_extract_desc), POINTER(cw_mesh), POINTER(cw_extract_counts), POINTER(cw_error)]),
     "cw_extractor_predict": (c_int, [POINTER(cw_extractor), POINTER(cw_extract_desc), POINTER(cw_extract_counts), POINTER(cw_error)]),
+    "cw_extractor_extract_changed": (c_int, [POINTER(cw_extractor), POINTER(cw_extract_desc), cw_brick_sink, POINTER(cw_error)]),
     "cw_extractor_recycle": (None, [POINTER(cw_extractor), POINTER(cw_mesh)]),
     "cw_extract_normals": (c_int, [POINTER(cw_volume), POINTER(cw_normals_desc), POINTER(cw_mesh), POINTER(cw_error)]),
     "cw_extract_stream": (c_int, [POINTER(cw_slice_source), POINTER(cw_stream_desc), cw_chunk_sink, POINTER(cw_extract_counts), POINTER(cw_error)]),

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import operator
+import sys
 import threading
 import warnings
 import weakref
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager
 from ctypes import POINTER, byref, c_double, c_size_t, c_uint32, memmove, memset, pointer, sizeof
 from dataclasses import dataclass
 from typing import Any, Union
@@ -44,6 +46,7 @@ from ._volume import Volume, number_labels, take_volume
 INSIDE = ("above", "below")
 
 _TAKE: Any = dict(c.cw_pipeline_sink._fields_)["take"]  # type: ignore[arg-type]
+_TAKE_BRICK: Any = dict(c.cw_brick_sink._fields_)["take"]  # type: ignore[arg-type]
 _OPEN: Any = dict(c.cw_pipeline_color._fields_)["open"]  # type: ignore[arg-type]
 
 AnyVolume = Union[Volume, "npt.NDArray[Any]"]
@@ -340,12 +343,26 @@ def describe_coloring(volume: AnyVolume, colormap: str, ends: tuple[float, float
     return color
 
 
+@dataclass(frozen=True)
+class Brick:
+    """The part of a surface in one brick of 16 x 16 x 16 cells.
+
+    index  number among all bricks, of which those along x follow each other
+    at     (x, y, z) its place among them: along x it has the cells from voxel 16 x - 1 to voxel 16 x + 15
+    mesh   without triangles, if the surface no longer passes through the brick
+    """
+
+    index: int
+    at: tuple[int, int, int]
+    mesh: Mesh
+
+
 class Extractor:
-    """Extracts several surfaces of one volume, at different isovalues.
+    """Extracts several surfaces of one volume, at different isovalues or while the volume changes.
 
     The first extraction builds an octree of values. Later ones read only the parts that their
-    isovalue passes through. Meshes are the same to the bit as those of extract(). The volume's
-    values must not change meanwhile. Calls of several threads wait for each other.
+    isovalue passes through. Meshes are the same to the bit as those of extract(). Changes of the
+    volume's values have to be told by update(). Calls of several threads wait for each other.
     """
 
     def __init__(self, volume: AnyVolume, *, component: int = 0, step: int = 0) -> None:
@@ -358,17 +375,109 @@ class Extractor:
         call(lib.cw_extractor_new, byref(self._view), byref(self._extractor))
         weakref.finalize(self, lib.cw_extractor_free, self._extractor).atexit = False
 
-    def extract(self, iso: float | str, **options: Any) -> Mesh:
-        """Extracts the surface at an isovalue; options and errors as of extract()."""
-        settings = Settings(**options)
+    @contextmanager
+    def _in_use(self) -> Iterator[None]:
+        """Lets one call at a time use the extractor."""
         if self._user == threading.get_ident():
             raise RuntimeError("an extractor cannot be used by the progress callback of its own call")
         with self._lock:
             self._user = threading.get_ident()
             try:
-                return run_pipeline(self.volume, iso, settings, self._component, self._step, self._extractor)
+                yield
             finally:
                 self._user = 0
+
+    def update(self, box: tuple[slice, slice, slice] | None = None) -> None:
+        """Tells that values of volume.array have changed, after they were written.
+
+        That is the array that the volume was made of, unless it had to be copied.
+
+        box  the slices along z, y, x that were written to, such as np.s_[8:16, 0:4, :]; None: all
+
+        Raises ValueError for slices with steps, Error: ARGUMENT for an empty box, UNSUPPORTED for a box of
+        an irregular grid.
+        """
+        part = None if box is None else byref(describe_box(box, self.volume.shape))
+        with self._in_use():
+            call(lib.cw_extractor_update, self._extractor, part)
+
+    def extract(self, iso: float | str, **options: Any) -> Mesh:
+        """Extracts the surface at an isovalue; options and errors as of extract()."""
+        settings = Settings(**options)
+        with self._in_use():
+            return run_pipeline(self.volume, iso, settings, self._component, self._step, self._extractor)
+
+    def extract_changed(
+        self,
+        iso: float | str,
+        *,
+        inside: str = "auto",
+        open: bool = False,
+        topology: str = "field",
+        placement: str = "linear",
+        normals: str = "field",
+        max_triangles: int = 0,
+        max_bytes: int = 0,
+        threads: int = 0,
+        progress: Progress = None,
+    ) -> list[Brick]:
+        """Extracts the bricks of the surface that may differ from what was given before.
+
+        The first time, and with another isovalue or other options, these are all that have a surface; then
+        those around what update() told of. Whoever replaces its bricks by them has the surface of extract():
+        the same triangles, positions and normals. Vertices on the faces between bricks are in each of them.
+
+        Options and errors as of extract(); max_triangles is for all bricks of one call. UNSUPPORTED for sparse
+        and irregular grids. After an error all bricks that were not given are given next time.
+        """
+        options = {name: value for name, value in locals().items() if name in Settings.__dataclass_fields__}
+        settings = Settings(**options)
+        reporter = Reporter(progress)
+        desc = settings.describe(take_iso(iso, self._view, settings.threads), self.volume, reporter)
+        bricks: list[Brick] = []
+
+        def take_brick(_user: int | None, given: Any, _err: Any) -> int:
+            try:
+                brick = given.contents
+                mesh = Mesh._from_c(brick.mesh.contents, given).copy()
+                x, y, z = brick.at
+                bricks.append(Brick(brick.index, (x, y, z), mesh))
+            except BaseException as exception:  # it would be lost in C
+                reporter.exception = exception
+                return int(Status.CANCELLED)
+            return 0
+
+        sink = c.cw_brick_sink(take=_TAKE_BRICK(take_brick))
+        with self._in_use():
+            reporter.call(lib.cw_extractor_extract_changed, self._extractor, byref(desc.extract), sink)
+        return bricks
+
+    def recycle(self, mesh: Mesh) -> None:
+        """Takes back a mesh that is no longer needed: the next surface is written to its memory.
+
+        The mesh is empty then. Raises BufferError while one of its arrays is in use, ValueError for a mesh
+        of NumPy's arrays.
+        """
+        if not isinstance(mesh._owner, Owner):
+            raise ValueError("the mesh is made of arrays that are not the library's")
+        mesh._attributes = None
+        if sys.getrefcount(mesh._owner) > 2:
+            raise BufferError("arrays of the mesh are in use")
+        with self._in_use():
+            lib.cw_extractor_recycle(self._extractor, byref(mesh._struct))
+
+
+def describe_box(box: tuple[slice, slice, slice], shape: tuple[int, int, int]) -> c.cw_box:
+    """Returns the box of voxels that slices along z, y, x stand for."""
+    if not isinstance(box, tuple) or len(box) != 3 or not all(isinstance(part, slice) for part in box):
+        raise TypeError("box must be three slices, along z, y and x")
+    out = c.cw_box()
+    for axis, (part, size) in enumerate(zip(reversed(box), reversed(shape))):
+        first, end, step = part.indices(size)
+        if step != 1:
+            raise ValueError("slices of a box have no steps")
+        out.first[axis], out.count[axis] = first, max(end - first, 0)
+    return out
 
 
 @dataclass(frozen=True)

@@ -30,7 +30,7 @@ static void bench(const char *name, const cw_mesh *a, const cw_mesh *b, int op, 
     cw_error err = {0};
     for (int n = 0; n < runs; n++) {
         for (int threads = 1; threads <= 2; threads++) {
-            cw_mesh out;
+            cw_mesh out = {0};
             const double from = wall_ms(), cpu_from = bench_cpu_ms();
             bench_check(
                 cw_mesh_boolean(meshes, 2,
@@ -58,7 +58,7 @@ static void bench(const char *name, const cw_mesh *a, const cw_mesh *b, int op, 
 
 static void bench_files(const char *const paths[2], int runs)
 {
-    cw_mesh mesh[2];
+    cw_mesh mesh[2] = {0};
     cw_error err = {0};
     for (int n = 0; n < 2; n++)
         bench_check(cw_mesh_read(paths[n], NULL, &mesh[n], NULL, &err), &err);
@@ -72,7 +72,7 @@ static void bench_field(const char *name, cw_field field, size_t size, int runs)
 {
     const cw_field_desc desc = {.field = field, .type = CW_F32, .dim = {size, size, size}};
     cw_volume volume;
-    cw_mesh mesh[2];
+    cw_mesh mesh[2] = {0};
     cw_error err = {0};
     bench_check(cw_field_sample(&desc, &volume, &err), &err);
     for (int n = 0; n < 2; n++) {

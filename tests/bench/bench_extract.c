@@ -277,7 +277,7 @@ static cw_mesh must(cw_status st, cw_mesh mesh, const cw_error *err)
 
 static double ours_ms(const cw_volume *v, const cw_extract_desc *d, timing *t)
 {
-    cw_mesh mesh;
+    cw_mesh mesh = {0};
     cw_error err = {0};
     reset_peak();
     const double before = memory_kb("VmRSS:"), begin = now_ms();
@@ -293,7 +293,7 @@ static double ours_ms(const cw_volume *v, const cw_extract_desc *d, timing *t)
 /* recycle: the next surface is written to this one's memory. */
 static double next_ms(cw_extractor *extractor, const cw_extract_desc *d, bool recycle)
 {
-    cw_mesh mesh;
+    cw_mesh mesh = {0};
     cw_error err = {0};
     const double begin = now_ms();
     const cw_status st = cw_extractor_extract(extractor, d, &mesh, NULL, &err);

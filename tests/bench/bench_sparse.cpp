@@ -47,7 +47,7 @@ double median(std::vector<double> times)
 double ours_ms(const cw_volume &v, double isovalue, bool normals, int threads,
                size_t *triangles)
 {
-    cw_mesh mesh;
+    cw_mesh mesh = {};
     cw_error err;
     cw_extract_desc desc = {};
     desc.isovalue = isovalue;

@@ -328,7 +328,7 @@ bool hostile_pass()
 /* Decides whether a label's surface is defective, also after its points are welded. */
 bool is_label_defective(const cw_label_surfaces &surfaces, uint32_t label)
 {
-    cw_mesh mesh;
+    cw_mesh mesh = {};
     cw_error err = {};
     if (cw_label_mesh(&surfaces, label, &mesh, &err) != CW_OK)
         return true;

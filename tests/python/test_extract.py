@@ -141,6 +141,63 @@ class Surfaces(Case):
         gc.collect()
         self.assertEqual(cw.memory_used(), before)
 
+    def test_an_extractor_follows_a_volume_that_changes(self):
+        waves = cw.make("gyroid", dims=(50, 40, 60))
+        values = np.array(waves.array, np.float32)
+        extractor = cw.Extractor(values)
+        kept = {}
+
+        def follow(**options):
+            changed = extractor.extract_changed(0, **options)
+            for brick in changed:
+                self.assertEqual(brick.index, brick.at[0] + 4 * (brick.at[1] + 3 * brick.at[2]))
+                kept[brick.index] = brick.mesh
+            whole = cw.extract(values, 0, **options)
+            self.same_mesh(extractor.extract(0, **options), whole)
+            corners = [mesh.world_vertices()[mesh.triangles] for mesh in kept.values()]
+            together = np.sort(np.concatenate(corners).reshape(-1, 9).view("f8,f8,f8,f8,f8,f8,f8,f8,f8"), axis=0)
+            expected = whole.world_vertices()[whole.triangles].reshape(-1, 9).view("f8,f8,f8,f8,f8,f8,f8,f8,f8")
+            self.assertTrue((together == np.sort(expected, axis=0)).all())
+            return len(changed)
+
+        everything = follow()
+        self.assertGreater(everything, 40)
+        self.assertEqual(follow(), 0)
+        values[4:9, 20:25, -8:] *= -1
+        extractor.update(np.s_[4:9, 20:25, -8:])
+        self.assertTrue(0 < follow() <= 4)
+        values[:] = 1 - values
+        extractor.update()
+        self.assertGreater(follow(), 40)
+        self.assertGreater(follow(open=True), 30)
+        for box, error in ((3, TypeError), (np.s_[1:2, 1:2], TypeError), (np.s_[::2, :, :], ValueError)):
+            with self.assertRaises(error):
+                extractor.update(box)
+        with self.assertRaises(cw.Error) as empty:
+            extractor.update(np.s_[3:3, :, :])
+        self.assertEqual(empty.exception.status, cw.Status.ARGUMENT)
+        with self.assertRaises(TypeError):
+            extractor.extract_changed(0, snap=0.3)
+        with self.assertRaises(cw.Error) as stopped:
+            extractor.extract_changed(0, progress=lambda *_: False)
+        self.assertEqual(stopped.exception.status, cw.Status.CANCELLED)
+
+    def test_an_extractor_writes_to_the_memory_of_a_mesh_it_took_back(self):
+        extractor = cw.Extractor(make_ball())
+        mesh = extractor.extract(0)
+        vertices = mesh.vertices
+        with self.assertRaises(BufferError):
+            extractor.recycle(mesh)
+        address = vertices.ctypes.data
+        del vertices
+        extractor.recycle(mesh)
+        self.assertEqual((len(mesh.vertices), len(mesh.triangles)), (0, 0))
+        again = extractor.extract(0)
+        self.assertEqual(again.vertices.ctypes.data, address)
+        self.same_mesh(again, cw.extract(make_ball(), 0))
+        with self.assertRaises(ValueError):
+            extractor.recycle(mesh.copy())
+
     def test_simplify_by_count_error_and_ratio(self):
         self.need("simplify")
         mesh = cw.extract(make_ball(), 0)

@@ -142,7 +142,7 @@ size_t live_check(const cw_volume *volume, double isovalue, bool inside_is_low, 
     const cwi_gl_functions *f = live_functions(&gl);
     const cw_live_surface live = {volume, isovalue, inside_is_low, true};
     const cw_extract_desc desc = {.isovalue = isovalue, .inside_is_low = inside_is_low};
-    cw_mesh gpu, cpu;
+    cw_mesh gpu = {0}, cpu = {0};
     cw_error err = {0};
     size_t size[2];
     f->forget(gl); /* another volume may have stood at the same address */

@@ -204,6 +204,7 @@ void test_make_far_sphere(cw_mesh *mesh)
         v.affine[a][a] = spacing[a];
         v.affine[a][3] = 1e6;
     }
+    *mesh = (cw_mesh){0};
     assert_ok(cw_extract(&v, NULL, mesh, NULL, &err), err);
     cw_volume_free(&v);
 }

@@ -20,7 +20,7 @@ cw_volume test_sample(cw_field field, size_t n, cw_type type)
 cw_mesh test_extract(const cw_volume *volume, const cw_extract_desc *desc,
                      cw_extract_counts *counts)
 {
-    cw_mesh mesh;
+    cw_mesh mesh = {0};
     cw_error err = {0};
     assert_ok(cw_extract(volume, desc, &mesh, counts, &err), err);
     return mesh;
@@ -259,7 +259,7 @@ void test_assert_sound(const cw_mesh *before, const cw_mesh *after)
 
 void test_repair_without_memory(const cw_mesh *mesh, const cw_repair_desc *desc, long least)
 {
-    cw_mesh out;
+    cw_mesh out = {0};
     cw_error err = {0};
     for (long n = 0;; n++) {
         cwi_alloc_fail_after(n);

@@ -66,7 +66,7 @@ static void one_after_another_as_each_by_itself(void **state)
         const size_t leaf_bytes = round % 3 ? 0 : CWI_LEAF_BYTES;
         assert_ok(cwi_extractor_new_with(engine, leaf_bytes, &v, &extractor, &err), err);
         for (int n = 0; n < 8; n++) {
-            cw_mesh once, again;
+            cw_mesh once = {0}, again = {0};
             cw_extract_counts counts[2] = {{0}, {0}};
             const double value = rand() % 2 ? floor(random_number(100)) : random_number(100);
             const cw_extract_desc d = {.isovalue = value * v.slope,
@@ -102,7 +102,7 @@ static void into_the_memory_of_the_surface_before(void **state)
     assert_ok(cw_extractor_new(&v, &extractor, &err), err);
     for (int n = 0; n < 8; n++) {
         const cw_extract_desc d = {.isovalue = n % 2 ? 0 : 3 * n, .no_normals = n % 3 == 2};
-        cw_mesh once;
+        cw_mesh once = {0};
         assert_ok(cw_extract(&v, &d, &once, NULL, &err), err);
         assert_ok(cw_extractor_extract(extractor, &d, &mesh, NULL, &err), err);
         test_assert_same_mesh(&once, &mesh);
@@ -124,7 +124,7 @@ static void spoil_other_bricks(bool leave_open)
                           second = {.isovalue = 20, .leave_open = leave_open};
     cw_volume v;
     cw_extractor *extractor;
-    cw_mesh once, again;
+    cw_mesh once = {0}, again = {0};
     cw_error err = {0};
     assert_ok(cw_field_sample(&desc, &v, &err), err);
     assert_ok(cw_extract(&v, &second, &once, NULL, &err), err);
@@ -156,7 +156,7 @@ static void after_a_cancelled_extraction_it_starts_afresh(void **state)
     const cw_field_desc desc = {.field = CW_FIELD_TORUS, .dim = {40, 40, 40}, .type = CW_F32};
     cw_volume v;
     cw_extractor *extractor;
-    cw_mesh once, again;
+    cw_mesh once = {0}, again = {0};
     cw_error err = {0};
     assert_ok(cw_field_sample(&desc, &v, &err), err);
     assert_ok(cw_extractor_new(&v, &extractor, &err), err);
@@ -210,7 +210,7 @@ static void memory_running_out_leaves_nothing_of_a_recycled_mesh(void **state)
     const cw_volume v = {.data = voxels, .type = CW_F32, .dim = {3, 3, 3}};
     const cw_extract_desc d = {.isovalue = 0.5f};
     cw_extractor *extractor;
-    cw_mesh mesh;
+    cw_mesh mesh = {0};
     cw_error err = {0};
     bool failed = true;
     assert_ok(cw_extractor_new(&v, &extractor, &err), err);

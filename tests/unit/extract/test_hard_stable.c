@@ -35,7 +35,7 @@ static void engines_and_threads_do_not_change_a_bit(void **state)
         cw_error err = {0};
         for (int open = test_is_short() ? n % 2 : 0; open < 2;
              open += test_is_short() ? 2 : 1) {
-            cw_mesh plain, other;
+            cw_mesh plain = {0}, other = {0};
             d.leave_open = open;
             d.threads = 1;
             assert_ok(cwi_extract_with(cwi_engine_at(0), &v, &d, &plain, NULL, &err), err);
@@ -59,7 +59,7 @@ static void bricks_do_not_change_a_bit(void **state)
         cw_volume v = make(n, 37, 26, 19);
         const cw_extract_desc d = level_of(n), first = {.isovalue = d.isovalue + 1};
         cw_extractor *extractor;
-        cw_mesh one, other;
+        cw_mesh one = {0}, other = {0};
         cw_error err = {0};
         assert_ok(cwi_extractor_new_with(cwi_engine_best(), 0, &v, &extractor, &err), err);
         assert_ok(cw_extractor_extract(extractor, &first, &other, NULL, &err), err);

@@ -159,7 +159,7 @@ static void what_is_made_for_even_grids_is_refused(void **state)
     (void)state;
     cw_volume v = make_sphere(20, 0.7), out;
     cw_error err = {0};
-    cw_mesh m;
+    cw_mesh m = {0};
     cw_distance d;
     assert_fails(cw_volume_coarsen(&v, (size_t[3]){2, 2, 2}, &out, &err), CW_ERR_UNSUPPORTED,
                  "rectilinear", err);

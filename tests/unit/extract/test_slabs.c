@@ -90,7 +90,7 @@ static void slabs_are_the_surface(void **state)
     test_seed(5);
     for (int round = 0; round < 32; round++) {
         cw_volume v;
-        cw_mesh whole;
+        cw_mesh whole = {0};
         cw_error err = {0};
         cw_extract_counts counts;
         const cw_extract_desc desc = {
@@ -117,7 +117,7 @@ static void what_the_sink_says_is_returned(void **state)
 {
     (void)state;
     cw_volume v;
-    cw_mesh whole;
+    cw_mesh whole = {0};
     cw_error err = {0};
     cw_extract_desc desc = {.isovalue = 0.5};
     assert_ok(cw_volume_alloc(&v, CW_F32, (size_t[3]){9, 14, 100}, 1, 1, &err), err);

@@ -51,7 +51,7 @@ static cw_volume run_filter(int filter, const cw_volume *v, const cw_filter_desc
 static double measure_roughness(const cw_volume *v)
 {
     const cw_extract_desc desc = {.isovalue = BACKGROUND + CONTRAST / 2};
-    cw_mesh mesh;
+    cw_mesh mesh = {0};
     cw_error err = {0};
     double sum = 0, sum_sq = 0, count = 0;
     assert_ok(cw_extract(v, &desc, &mesh, NULL, &err), err);

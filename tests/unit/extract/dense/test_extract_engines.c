@@ -77,7 +77,7 @@ static void every_engine_gives_the_same_bytes(void **state)
                                        .leave_open = rand() % 4 == 0,
                                        .cubic_placement = rand() % 4 == 0,
                                        .threads = 1};
-            cw_mesh plain, other;
+            cw_mesh plain = {0}, other = {0};
             cw_error err = {0};
             assert_ok(cwi_extract_with(cwi_engine_at(0), &v, &d, &plain, NULL, &err), err);
             for (size_t e = 1; cwi_engine_at(e); e++) {
@@ -128,7 +128,7 @@ static void many_vertices_at_a_time_are_as_good_as_one(void **state)
         cw_mesh many = test_extract(&v, &d, NULL);
         cwi_engine engine = *cwi_engine_at(0);
         engine.write_span = write_one_at_a_time;
-        cw_mesh one;
+        cw_mesh one = {0};
         assert_ok(cwi_extract_with(&engine, &v, &d, &one, NULL, &err), err);
         assert_as_good(&many, &one);
         cw_mesh_free(&many);
@@ -151,7 +151,7 @@ static void so_they_are_on_cubics(void **state)
                                        cw_field_stored(CW_FIELD_GYROID, (cw_type)type, 0.1),
                                    .cubic_placement = true};
         test_turn(&v, type);
-        cw_mesh many = test_extract(&v, &d, NULL), one;
+        cw_mesh many = test_extract(&v, &d, NULL), one = {0};
         cwi_engine engine = *cwi_engine_at(0);
         engine.write_span = write_one_at_a_time;
         assert_ok(cwi_extract_with(&engine, &v, &d, &one, NULL, &err), err);
@@ -196,7 +196,7 @@ static void no_data_is_as_nan(void **state)
                                        .inside_is_low = round & 8,
                                        .cubic_placement = round & 16,
                                        .leave_open = (round + again) % 3 == 0};
-            cw_mesh a, b;
+            cw_mesh a = {0}, b = {0};
             assert_ok(cw_extractor_extract(x, &d, &a, NULL, &err), err);
             assert_ok(cwi_extract_with(engine, &v[1], &d, &b, NULL, &err), err);
             assert_true(b.triangle_count > 0);
@@ -230,7 +230,7 @@ static void a_gap_elsewhere_changes_nothing_of_an_open_surface(void **state)
                 at + 3 * plane >= count)
                 test_store(v.type, cw_volume_voxels(&v), at, -1);
         for (size_t e = 0; cwi_engine_at(e); e++) {
-            cw_mesh whole, gap;
+            cw_mesh whole = {0}, gap = {0};
             test_store(v.type, cw_volume_voxels(&v), count - 1, -1);
             assert_ok(cwi_extract_with(cwi_engine_at(e), &v, &d, &whole, NULL, &err), err);
             test_store(v.type, cw_volume_voxels(&v), count - 1, NAN);
@@ -280,7 +280,7 @@ static void unusable_arguments_are_refused_by_name(void **state)
     (void)state;
     static const uint8_t voxels[8];
     cw_volume v = {.data = voxels, .dim = {2, 2, 2}};
-    cw_mesh mesh;
+    cw_mesh mesh = {0};
     cw_error err = {0};
     assert_fails(cw_extract(&v, &(cw_extract_desc){.isovalue = NAN}, &mesh, NULL, &err),
                  CW_ERR_ARGUMENT, "isovalue", err);
@@ -300,7 +300,7 @@ static void limits_stop_before_the_mesh_is_made(void **state)
 {
     (void)state;
     cw_volume v = test_sample(CW_FIELD_SPHERE, 32, CW_F32);
-    cw_mesh mesh;
+    cw_mesh mesh = {0};
     cw_error err = {0};
     cw_extract_counts counts, made, bare;
     assert_ok(cw_extract_predict(&v, NULL, &counts, &err), err);
@@ -332,7 +332,7 @@ static void it_can_be_cancelled_at_any_poll(void **state)
 {
     (void)state;
     cw_volume v = test_sample(CW_FIELD_SPHERE, 40, CW_F32);
-    cw_mesh mesh;
+    cw_mesh mesh = {0};
     cw_error err = {0};
     for (int polls = 0;; polls++) {
         int left = polls;
@@ -353,7 +353,7 @@ static void run_out_of_memory(float corner)
     const float voxels[27] = {[0] = corner, [13] = 1};
     const cw_volume v = {.data = voxels, .type = CW_F32, .dim = {3, 3, 3}};
     const cw_extract_desc d = {.isovalue = 0.5f, .leave_open = true};
-    cw_mesh mesh;
+    cw_mesh mesh = {0};
     cw_error err = {0};
     for (long n = 0;; n++) {
         cwi_alloc_fail_after(n);

@@ -31,7 +31,7 @@ static outcome extract(const grid *g, bool inside_is_low)
         .data = g->voxels, .type = CW_F32, .dim = {g->dim[0], g->dim[1], g->dim[2]}};
     const cw_extract_desc desc = {.inside_is_low = inside_is_low, .threads = 1};
     outcome out = {0};
-    cw_mesh mesh;
+    cw_mesh mesh = {0};
     cw_quality q[2];
     if (cw_extract(&v, &desc, &mesh, NULL, NULL) != CW_OK)
         return out;

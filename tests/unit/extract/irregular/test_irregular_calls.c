@@ -40,7 +40,7 @@ static void slabs_and_extractors_give_the_same(void **state)
     test_grid g;
     cw_extractor *e;
     cw_error err = {0};
-    cw_mesh again;
+    cw_mesh again = {0};
     cw_extract_counts counts, predicted;
     test_grid_make(&g, TEST_MIXED, 10, 0.2);
     test_grid_fill(&g, slope);
@@ -66,7 +66,7 @@ static void what_is_wrong_is_named(void **state)
     (void)state;
     test_grid g;
     cw_error err = {0};
-    cw_mesh m;
+    cw_mesh m = {0};
     test_grid_make(&g, TEST_MIXED, 10, 0);
     test_grid_fill(&g, sphere);
 #define FAILS(desc, status, words)                                                             \
@@ -110,7 +110,7 @@ static void it_can_be_stopped_anywhere(void **state)
     (void)state;
     test_grid g;
     cw_error err = {0};
-    cw_mesh m;
+    cw_mesh m = {0};
     cw_status st = CW_ERR_CANCELLED;
     test_grid_make(&g, TEST_MIXED, 10, 0);
     test_grid_fill(&g, slope);

@@ -132,7 +132,7 @@ static void two_fields_agree_with_the_isosurface(void **state)
     for (int kind = 0; kind < 3; kind++) {
         cw_volume fields[2] = {0};
         cw_label_surfaces s;
-        cw_mesh surface;
+        cw_mesh surface = {0};
         cw_error err = {0};
         for (int n = 0; n < 2; n++)
             assert_ok(

@@ -45,7 +45,7 @@ static cw_status open_paint(void *user, const cw_volume **volume, cw_error *err)
 
 static void simplify_by_hand(cw_mesh *mesh, const cw_simplify_desc *desc)
 {
-    cw_mesh reduced;
+    cw_mesh reduced = {0};
     cw_error err = {0};
     assert_ok(cw_simplify(mesh, desc, &reduced, NULL, &err), err);
     cw_mesh_free(mesh);
@@ -55,7 +55,7 @@ static void simplify_by_hand(cw_mesh *mesh, const cw_simplify_desc *desc)
 /* Does what the settings ask for by one call after the other. */
 static cw_mesh make_by_hand(const cw_volume *v, const cw_pipeline_desc *d)
 {
-    cw_mesh mesh, cut;
+    cw_mesh mesh = {0}, cut = {0};
     cw_error err = {0};
     cw_sample_facts sampled;
     assert_ok(cw_extract(v, &d->extract, &mesh, NULL, &err), err);
@@ -121,7 +121,7 @@ static void stages_are_the_calls_one_after_the_other(void **state)
                               .close_handles = bits & 128 ? &handles : NULL};
         const bool by_slabs = d.simplify && !(bits & (31 | 128));
         cw_pipeline_facts facts = {0};
-        cw_mesh mesh;
+        cw_mesh mesh = {0};
         cw_error err = {0};
         if (by_slabs || (test_is_short() && bits * 37 % 256 >= 48))
             continue;
@@ -200,7 +200,7 @@ static void slices_give_the_surface_of_the_volume(void **state)
                                     .spool_path = test_path("surface")};
         cw_pipeline_facts facts = {0}, whole = {0};
         taken t = {0};
-        cw_mesh mesh;
+        cw_mesh mesh = {0};
         cw_error err = {0};
         if (reduces && !cw_simplify_available())
             continue;
@@ -231,7 +231,7 @@ static void levels_are_given_away_one_by_one(void **state)
     cw_volume volume = make_noisy();
     const size_t counts[3] = {4000, 2000, 1500};
     const cw_pipeline_desc d = {.extract = {.isovalue = ISO}, .lod = counts, .lod_count = 3};
-    cw_mesh full, levels[3];
+    cw_mesh full = {0}, levels[3] = {0};
     taken t = {0};
     cw_error err = {0};
     if (!cw_simplify_available())
@@ -357,7 +357,7 @@ static void a_mesh_runs_through_the_same_stages(void **state)
                           .close_handles = &handles,
                           .simplify = cw_simplify_available() ? &simplify : NULL};
     taken t = {0};
-    cw_mesh mesh, expected, empty = {0};
+    cw_mesh mesh = {0}, expected = {0}, empty = {0};
     cw_pipeline_facts facts = {0};
     cw_error err = {0};
     assert_ok(cw_extract(&volume, &d.extract, &mesh, NULL, &err), err);
@@ -386,7 +386,7 @@ static void maps_need_an_atlas_and_fewer_triangles(void **state)
     cw_pipeline_desc d = {.extract = {.isovalue = ISO}, .atlas = &atlas, .bake = &bake};
     taken_maps t = {0};
     cw_error err = {0};
-    cw_mesh mesh;
+    cw_mesh mesh = {0};
     assert_fails(
         cw_pipeline_run(&volume, NULL, &d, (cw_pipeline_sink){take_maps, &t}, NULL, &err),
         CW_ERR_ARGUMENT, "maps are those of a surface before simplify or lod", err);
@@ -421,7 +421,7 @@ static void stages_run_in_the_order_of_the_recipe(void **state)
                                 .smooth = &smooth,
                                 .check = true,
                                 .watch = {.end = note_stage, .user = &w}};
-    cw_mesh mesh;
+    cw_mesh mesh = {0};
     cw_error err = {0};
     assert_ok(cw_pipeline_mesh(&volume, NULL, &d, &mesh, NULL, &err), err);
     assert_int_equal(w.count, 6); /* normals, too */
@@ -451,7 +451,7 @@ static cw_status compare_label(void *user, cw_pipeline_surface *surface,
                                const cw_pipeline_facts *facts, cw_error *err)
 {
     taken_labels *t = user;
-    cw_mesh mesh;
+    cw_mesh mesh = {0};
     assert_true(surface->label > t->last);
     t->last = surface->label;
     t->count++;
@@ -592,7 +592,7 @@ static void later_versions_are_refused(void **state)
 {
     (void)state;
     cw_volume volume = make_noisy();
-    cw_mesh mesh;
+    cw_mesh mesh = {0};
     cw_error err = {0};
     cw_pipeline_desc d = {.extract = {.isovalue = ISO}, .largest = 1};
     cw_pipeline_facts facts = {.version = 1, .culled = 7};
@@ -609,7 +609,7 @@ static void an_empty_surface_tells_the_range(void **state)
 {
     (void)state;
     cw_volume volume = make_noisy();
-    cw_mesh mesh;
+    cw_mesh mesh = {0};
     cw_error err = {0};
     cw_pipeline_desc d = {.extract = {.isovalue = 1e6}};
     assert_fails(cw_pipeline_mesh(&volume, NULL, &d, &mesh, NULL, &err), CW_ERR_EMPTY,
@@ -642,7 +642,7 @@ static void an_empty_surface_tells_of_missing_values(void **state)
     };
     for (size_t n = 0; n < sizeof rows / sizeof *rows; n++) {
         cw_volume v;
-        cw_mesh mesh;
+        cw_mesh mesh = {0};
         cw_error err = {0};
         const cw_pipeline_desc d = {.extract = {.isovalue = 50}};
         assert_int_equal(cw_volume_alloc(&v, CW_F32, (const size_t[3]){10, 10, 10}, 1, 1, NULL),

@@ -359,7 +359,7 @@ static void check_threads_and_engines(cw_extract_desc d)
     cw_volume v = noise();
     cw_error err = {0};
     cw_extract_counts one_counts, counts;
-    cw_mesh one = test_extract(&v, &d, &one_counts), other;
+    cw_mesh one = test_extract(&v, &d, &one_counts), other = {0};
     for (int n = 2; n < 9; n += 3) {
         d.threads = n;
         other = test_extract(&v, &d, &counts);
@@ -394,7 +394,7 @@ static void an_extractor_snaps_the_same(void **state)
     assert_ok(cw_extractor_new(&v, &e, &err), err);
     for (int iso = -8; iso <= 8; iso += test_is_short() ? 6 : 2) {
         const cw_extract_desc d = {.isovalue = iso, .snap = 0.4, .leave_open = iso % 4 == 0};
-        cw_mesh once = test_extract(&v, &d, NULL), again;
+        cw_mesh once = test_extract(&v, &d, NULL), again = {0};
         assert_ok(cw_extractor_extract(e, &d, &again, NULL, &err), err);
         test_assert_same_mesh(&once, &again);
         cw_mesh_free(&once);
@@ -426,7 +426,7 @@ static void shares_out_of_range_are_refused(void **state)
     static const double shares[] = {-0.1, 0.51, NAN, INFINITY};
     cw_volume v = test_sample(CW_FIELD_SPHERE, 8, CW_F32);
     for (int n = 0; n < 4; n++) {
-        cw_mesh mesh;
+        cw_mesh mesh = {0};
         cw_error err = {0};
         const cw_extract_desc d = {.snap = shares[n]};
         assert_fails(cw_extract(&v, &d, &mesh, NULL, &err), CW_ERR_ARGUMENT, "snap", err);
@@ -441,7 +441,7 @@ static void running_out_of_memory_leaves_nothing(void **state)
     const cw_extract_desc d = {.snap = 0.3, .threads = 1};
     bool failed = true;
     for (long n = 0; failed; n++) {
-        cw_mesh mesh;
+        cw_mesh mesh = {0};
         cw_error err = {0};
         cwi_alloc_fail_after(n);
         const cw_status st = cw_extract(&v, &d, &mesh, NULL, &err);

@@ -186,7 +186,7 @@ static void test_engines_and_threads(void **state)
     const cwi_engine *engine;
     for (size_t n = 0; (engine = cwi_engine_at(n)); n++)
         for (int threads = 1; threads <= 3; threads += 2) {
-            cw_mesh m;
+            cw_mesh m = {0};
             const cw_extract_desc d = {.threads = threads};
             assert_ok(cwi_extract_with(engine, &sparse, &d, &m, NULL, &err), err);
             test_assert_same_mesh(&first, &m);
@@ -219,7 +219,7 @@ static void test_extractor_and_slabs(void **state)
     assert_ok(cw_extractor_new(&sparse, &e, &err), err);
     for (int n = -2; n <= 2; n++) {
         const cw_extract_desc d = {.isovalue = n};
-        cw_mesh whole = test_extract(&sparse, &d, NULL), m;
+        cw_mesh whole = test_extract(&sparse, &d, NULL), m = {0};
         assert_ok(cw_extractor_extract(e, &d, &m, NULL, &err), err);
         test_assert_same_mesh(&whole, &m);
         cw_mesh_free(&whole);
@@ -264,7 +264,7 @@ static void test_too_large(void **state)
     const size_t side = (size_t)1 << 32;
     const cw_volume v = {.type = CW_F32, .dim = {side, side, side}, .sparse = &s};
     cw_error err = {0};
-    cw_mesh m;
+    cw_mesh m = {0};
     (void)state;
     assert_fails(cw_extract(&v, &(cw_extract_desc){.isovalue = 1, .max_bytes = 10000000}, &m,
                             NULL, &err),
@@ -284,7 +284,7 @@ static void test_nothing_there(void **state)
 static void test_refusals(void **state)
 {
     cw_error err = {0};
-    cw_mesh m;
+    cw_mesh m = {0};
     cw_statistics range;
     (void)state;
     cw_volume dense = make_dense(ball, CW_F32, 1, 3), sparse = test_sparse_of(&dense, -3),
@@ -322,7 +322,7 @@ static void test_overlaps(void **state)
     for (uint32_t round = 0; round < 60; round += test_is_short() ? 5 : 1) {
         cw_tile tiles[40];
         cw_error err = {0};
-        cw_mesh m;
+        cw_mesh m = {0};
         for (uint32_t n = 0; n < 40; n++) {
             tiles[n].value = (n + round) % 3;
             for (int a = 0; a < 3; a++) {
@@ -345,7 +345,7 @@ static void test_overlaps(void **state)
 static void test_no_memory_and_stops(void **state)
 {
     cw_error err = {0};
-    cw_mesh m;
+    cw_mesh m = {0};
     (void)state;
     cw_volume dense = make_dense(ball, CW_F32, 1, 3), sparse = test_sparse_of(&dense, -3);
     cw_status st = CW_ERR_NO_MEMORY;

@@ -13,6 +13,7 @@ static void make_full_mesh(cw_mesh *mesh)
     assert_ok(cw_field_sample(&desc, &v, &err), err);
     for (int a = 0; a < 3; a++)
         v.affine[a][3] = 123.456 * (a + 1);
+    *mesh = (cw_mesh){0};
     assert_ok(cw_extract(&v, NULL, mesh, NULL, &err), err);
     cw_volume_free(&v);
     mesh->colors = malloc(4 * mesh->vertex_count);
@@ -97,7 +98,7 @@ static void local_files_come_back_to_the_bit(void **state)
     (void)state;
     const char *name;
     const cw_format *format;
-    cw_mesh mesh, back;
+    cw_mesh mesh = {0}, back = {0};
     cw_mesh_file file;
     make_full_mesh(&mesh);
     for (size_t i = 0; (format = written(i, &name)); i++) {
@@ -121,7 +122,7 @@ static void files_of_the_world_come_back_where_they_were(void **state)
     const char *name;
     const cw_format *format;
     double low[3], high[3], low_back[3], high_back[3];
-    cw_mesh mesh, back;
+    cw_mesh mesh = {0}, back = {0};
     cw_mesh_file file;
     make_full_mesh(&mesh);
     cw_mesh_bounds(&mesh, low, high);
@@ -145,7 +146,7 @@ static void files_of_the_world_come_back_where_they_were(void **state)
 static void a_local_stl_file_keeps_every_corner(void **state)
 {
     (void)state;
-    cw_mesh mesh, back;
+    cw_mesh mesh = {0}, back = {0};
     cw_mesh_file file;
     make_full_mesh(&mesh);
     for (int a = 0; a < 3; a++)
@@ -166,7 +167,7 @@ static void a_local_stl_file_keeps_every_corner(void **state)
 static void a_far_obj_file_keeps_its_shape(void **state)
 {
     (void)state;
-    cw_mesh mesh, back;
+    cw_mesh mesh = {0}, back = {0};
     cw_mesh_file file;
     test_make_far_sphere(&mesh);
     read_written("a.obj", &mesh, false, &back, &file);
@@ -184,7 +185,7 @@ static void content_decides_then_the_extension(void **state)
     static const char triangle[] = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
     static const char off[] = "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
     const cw_mesh_read_desc named = {.reader = "off"}, unknown = {.reader = "xyz"};
-    cw_mesh mesh;
+    cw_mesh mesh = {0};
     cw_mesh_file file;
     cw_error err = {0};
     assert_ok(read_text("a.stl", off, &mesh, &file, &err), err);
@@ -226,17 +227,17 @@ static void line_ends_of_every_kind_are_read(void **state)
     static const char *const names[] = {"a.obj", "a.off", "a.stl", "a.ply"};
     static const char *const ends[] = {"\r", "\r\n"};
     const cw_write_desc desc = {.text = true};
-    cw_mesh mesh;
+    cw_mesh mesh = {0};
     cw_error err = {0};
     make_full_mesh(&mesh);
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
-        cw_mesh plain;
+        cw_mesh plain = {0};
         size_t size, length;
         assert_ok(cw_mesh_write(test_path(names[i]), &mesh, &desc, &err), err);
         assert_ok(cw_mesh_read(test_path(names[i]), NULL, &plain, NULL, &err), err);
         char *text = test_file_read(test_path(names[i]), &size);
         for (size_t e = 0; e < 2; e++) {
-            cw_mesh back;
+            cw_mesh back = {0};
             cw_mesh_file file;
             char *other = replace_line_ends(text, size, ends[e], &length);
             assert_ok(read_bytes(names[i], other, length, &back, &file, &err), err);
@@ -265,7 +266,7 @@ static void a_binary_file_may_have_an_old_header(void **state)
     static const unsigned char face[4] = {3, 0, 1, 2};
     float points[9] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
     char file[sizeof header + sizeof points + sizeof face];
-    cw_mesh mesh;
+    cw_mesh mesh = {0};
     cw_error err = {0};
     memcpy(points, first, sizeof first);
     memcpy(file, header, sizeof header - 1);
@@ -280,7 +281,7 @@ static void limits_hold(void **state)
 {
     (void)state;
     const char *name;
-    cw_mesh mesh, back;
+    cw_mesh mesh = {0}, back = {0};
     cw_error err = {0};
     make_full_mesh(&mesh);
     for (size_t i = 0; written(i, &name); i++) {
@@ -303,7 +304,7 @@ static void reading_may_be_stopped(void **state)
 {
     (void)state;
     const char *name;
-    cw_mesh mesh, back;
+    cw_mesh mesh = {0}, back = {0};
     cw_error err = {0};
     make_full_mesh(&mesh);
     for (size_t i = 0; written(i, &name); i++) {
@@ -320,7 +321,7 @@ static void memory_may_run_out_anywhere(void **state)
 {
     (void)state;
     const char *name;
-    cw_mesh mesh;
+    cw_mesh mesh = {0};
     cw_error err = {0};
     make_full_mesh(&mesh);
     for (size_t i = 0; written(i, &name); i++) {

@@ -182,7 +182,7 @@ static void writes_that_are_ended_keep_the_old_file(void **state)
                                                                   write_until_killed};
     const cw_field_desc field = {.field = CW_FIELD_GYROID, .dim = {40, 40, 40}, .type = CW_F32};
     cw_volume v;
-    cw_mesh mesh;
+    cw_mesh mesh = {0};
     cw_error err = {0};
     assert_ok(cw_field_sample(&field, &v, &err), err);
     assert_ok(cw_extract(&v, NULL, &mesh, NULL, &err), err);
@@ -496,7 +496,7 @@ static void a_file_appears_with_consent_only(void **state)
 {
     (void)state;
     static const char *const names[] = {"a.stl", "a.ply", "a.obj", "a.off", "a.vtp"};
-    cw_mesh mesh;
+    cw_mesh mesh = {0};
     test_make_cube(&mesh);
     const cw_part part = {.mesh = &mesh};
     for (size_t n = 0; n < sizeof names / sizeof *names; n++) {

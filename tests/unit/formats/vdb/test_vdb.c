@@ -237,7 +237,7 @@ static void test_damage(void **state)
     for (int round = 0; round < 120; round += test_is_short() ? 7 : 1, rounds++) {
         cw_error err = {0};
         cw_volume v;
-        cw_mesh m;
+        cw_mesh m = {0};
         char *copy = malloc(size);
         memcpy(copy, bytes, size);
         size_t length = size;

@@ -107,7 +107,7 @@ static void large_arrays_are_cut_into_blocks(void **state)
     (void)state;
     const cw_field_desc desc = {.field = CW_FIELD_GYROID, .dim = {64, 64, 64}, .type = CW_F32};
     cw_volume v;
-    cw_mesh mesh;
+    cw_mesh mesh = {0};
     cw_error err = {0};
     assert_ok(cw_field_sample(&desc, &v, &err), err);
     assert_ok(cw_extract(&v, NULL, &mesh, NULL, &err), err);

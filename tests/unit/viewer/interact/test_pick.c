@@ -318,6 +318,7 @@ static void make_sphere(cw_mesh *mesh, float radius)
     for (int a = 0; a < 3; a++)
         for (int b = 0; b < 4; b++)
             v.affine[a][b] *= size;
+    *mesh = (cw_mesh){0};
     assert_ok(cw_extract(&v, NULL, mesh, NULL, &err), err);
     cw_volume_free(&v);
 }

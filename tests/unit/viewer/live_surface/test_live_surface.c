@@ -201,7 +201,7 @@ static void refuses_what_it_cannot(void **state)
                           small_buffer = {.buffer_bytes = 4096};
     const cwi_live_limits small_surface = {.buffer_bytes = (size_t)1 << 20};
     cw_error err = {0};
-    cw_mesh mesh;
+    cw_mesh mesh = {0};
     size_t size[2];
     f->forget(gl); /* limits are those of a volume that comes */
     assert_fails(f->extract(gl, &live, &small_texture, NULL, size, &mesh, &err), CW_ERR_LIMIT,
@@ -269,7 +269,7 @@ static void scenes_have_one(void **state)
     cw_volume v = test_sample(CW_FIELD_GYROID, 40, CW_I16);
     const cw_live_surface live = {.volume = &v, .isovalue = 100, .on_software = true};
     const cw_extract_desc desc = {.isovalue = 100};
-    cw_mesh mesh;
+    cw_mesh mesh = {0};
     cw_error err = {0};
     bool ready;
     assert_ok(cw_extract(&v, &desc, &mesh, NULL, &err), err);
@@ -349,7 +349,7 @@ static void times_are_told(void **state)
     const cw_live_surface live = {
         .volume = &v, .isovalue = cw_field_isovalue(CW_FIELD_GYROID), .on_software = true};
     cwi_live_times times = {-1, -1, -1};
-    cw_mesh a, b;
+    cw_mesh a = {0}, b = {0};
     cw_error err = {0};
     size_t size[2];
     assert_ok(f->extract(gl, &live, NULL, NULL, size, &a, &err), err);
