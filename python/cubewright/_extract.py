@@ -25,7 +25,7 @@ from ._errors import Error, Status, call
 from ._handles import describe_handles
 from ._library import lib
 from ._memory import Owner, unpack
-from ._mesh import Mesh
+from ._mesh import Levels, Mesh
 from ._options import (
     take_choice,
     take_count,
@@ -232,19 +232,6 @@ def extract(
     return run_pipeline(volume, iso, Settings(**options), component, step)
 
 
-class Levels(list[Mesh]):
-    """Levels of detail, from the finest to the coarsest.
-
-    maps  of all levels, by name: {"normals": image}, image (size, size, 4) uint8, top row first
-    """
-
-    maps: dict[str, npt.NDArray[np.uint8]]
-
-    def __init__(self) -> None:
-        super().__init__()
-        self.maps = {}
-
-
 def extract_levels(
     volume: AnyVolume,
     iso: float | str,
@@ -260,7 +247,7 @@ def extract_levels(
 
     triangles  number of each level, fewer than of the one before
     maps       maps of the full surface to bake, as of bake_maps(). They need uv, and all levels share them and the
-               texture coordinates. Write each level as Part(name, level, normal_map=levels.maps["normals"])
+               texture coordinates. write() takes the levels, with this map of normals
     reach      a length: how far the full surface may be from the first level; 0: 4 % of the box's diagonal
     options    as of extract(), but simplify. Normals are those of the field
 

@@ -309,6 +309,19 @@ class Mesh:
         return f"<cubewright.Mesh {counts}{with_text}>"
 
 
+class Levels(list[Mesh]):
+    """Levels of detail, from the finest to the coarsest.
+
+    maps  of all levels, by name: {"normals": image}, image (size, size, 4) uint8, top row first
+    """
+
+    maps: dict[str, npt.NDArray[np.uint8]]
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.maps = {}
+
+
 def restore_mesh(
     arrays: dict[str, Any], affine: npt.NDArray[Any], attributes: list[dict[str, Any]], facts: dict[str, Any]
 ) -> Mesh:
@@ -346,4 +359,4 @@ def take_mesh(name: str, mesh: Any) -> c.cw_mesh:
     return mesh._struct
 
 
-__all__ = ["Mesh"]
+__all__ = ["Levels", "Mesh"]

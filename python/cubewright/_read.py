@@ -198,6 +198,10 @@ class Part:
     bake_normals() makes it, in place of pictures["normal"]; glTF and OBJ hold it for a mesh with texture
     coordinates. pictures has the bytes of image files by their use: color, normal, metallic_roughness,
     occlusion, emissive. They are read and written as they are.
+
+    level is the level of detail: level n + 1 is a coarser form of the part right before it, at level n; for glTF
+    and Neuroglancer. time is that at which the part appears in place of the one before, in seconds: with times,
+    glTF is animated.
     """
 
     name: str | None
@@ -205,6 +209,8 @@ class Part:
     label: Label | None = None
     normal_map: npt.NDArray[np.uint8] | None = None
     pictures: dict[str, bytes] | None = None
+    level: int = 0
+    time: float | None = None
 
 
 # In the order of cw_picture_use.

@@ -10,7 +10,7 @@ from typing import Any
 from . import _declarations as c
 from ._errors import call
 from ._library import lib
-from ._mesh import ARRAYS, Mesh, take_mesh
+from ._mesh import ARRAYS, Levels, Mesh, take_mesh
 from ._options import (
     name_type,
     take_choice,
@@ -116,7 +116,7 @@ def simplify_levels(
     keep_border: bool = False,
     threads: int = 0,
     progress: Progress = None,
-) -> list[Mesh]:
+) -> Levels:
     """Returns levels of detail of a mesh, each made from the one before.
 
     triangles  number of each level, fewer than of the one before. Other arguments, and what stays
@@ -137,7 +137,8 @@ def simplify_levels(
         reporter,
     )
     out = (c.cw_mesh * len(counts))()
-    levels = [Mesh._from_c(each) for each in out]
+    levels = Levels()
+    levels.extend(Mesh._from_c(each) for each in out)
     numbers = (c_size_t * len(counts))(*counts)
     reporter.call(
         lib.cw_simplify_levels, byref(source), byref(desc), numbers, len(counts), out, None

@@ -12,8 +12,8 @@ import numpy.typing as npt
 
 from . import _declarations as c
 from ._library import lib
-from ._mesh import Mesh, take_mesh
-from ._options import take_choice, take_count, take_flag, take_length, take_text
+from ._mesh import Levels, Mesh, take_mesh
+from ._options import take_choice, take_count, take_flag, take_length, take_number, take_text
 from ._progress import Progress, Reporter
 from ._read import PICTURES, UNITS, Part
 from ._render import make_png
@@ -82,7 +82,8 @@ def write(
     path        or a binary file object, which gets the bytes of the file once all are made. Its format is
                 that of its name, if it has one; formats of several files are refused
     what        a Mesh; a dict of names and meshes, or a list of Part, which has labels too (parts
-                of a file, kept by glTF, OBJ, 3MF); or a Volume (.nrrd, .nii, .nii.gz, .mha)
+                of a file, kept by glTF, OBJ, 3MF); Levels of detail (glTF); or a Volume (.nrrd, .nii, .nii.gz,
+                .mha). Parts with times are an animation of glTF
     format      a name of formats(), in place of the suffix
     no_clobber  fail if the path exists; default: replace it. A file appears only when complete
     local       coordinates relative to the mesh's origin; default: world coordinates. glTF and
@@ -118,10 +119,14 @@ def write_to(target: bytes | None, what: Any, desc: Any, result: Any, reporter: 
         desc.compressed = pointer(result)
     if isinstance(what, Mapping):
         what = [Part(title, mesh) for title, mesh in what.items()]
+    if isinstance(what, Levels):
+        picture = what.maps.get("normals")
+        what = [Part(None, mesh, normal_map=picture, level=n) for n, mesh in enumerate(what)]
     if isinstance(what, Sequence) and not isinstance(what, (str, bytes)):
         parts = (c.cw_part * max(len(what), 1))()
         for part, given in zip(parts, what):
             fill_part(part, given)
+        desc.animated = any(part.time is not None for part in what)
         reporter.call(lib.cw_parts_write, target, parts, len(what), byref(desc))
     elif isinstance(what, Mesh):
         reporter.call(lib.cw_mesh_write, target, byref(what._struct), byref(desc))
@@ -134,6 +139,8 @@ def fill_part(part: c.cw_part, given: Part) -> None:
         raise TypeError(f"a list of Part can be written, not of {type(given).__name__}")
     part.mesh = pointer(take_mesh(f"the mesh of part {given.name!r}", given.mesh))
     part.name = take_text("a part's name", given.name)
+    part.level = take_count("a part's level", given.level)
+    part.time_s = 0.0 if given.time is None else take_number("a part's time", given.time)
     files = {use: borrow_bytes(use, data) for use, data in (given.pictures or {}).items()}
     if given.normal_map is not None:
         files["normal"] = encode_picture(given.normal_map)
