@@ -141,7 +141,7 @@ static void what_needs_more_files_is_refused(void **state)
                                       &bytes, &size, &err),
                  CW_ERR_UNSUPPORTED,
                  cw_mesh_format(NULL, "neuroglancer")->in_this_build ? "a folder of many files"
-                                                                     : "neuroglancer",
+                                                                     : "not in this build",
                  err);
     assert_null(bytes);
     assert_int_equal(test_folder_entries(), 0);
