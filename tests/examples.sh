@@ -84,7 +84,7 @@ render_to_png missing.nrrd none.png 2>error || code=$?
 [ $code = 3 ] && grep -q 'missing.nrrd' error || fail "a missing file gives exit code $code"
 [ ! -e none.png ] || fail "a picture of a missing file"
 # Bytes in memory and streams are those of files, in sanitized programs too where the compiler has them.
-serve() { "$1"serve_upload scan.nrrd <sphere.nrrd >served.glb 2>served || fail "$(cat served)"; }
+serve() { "$1"serve_upload scan.nrrd "${2-ply}" <sphere.nrrd >served.mesh 2>served || fail "$(cat served)"; }
 stream() { "$1"stream_through 0.2 ply <sphere.nrrd >through.ply 2>through || fail "$(cat through)"; }
 cubewright extract sphere.nrrd --iso 0.2 -o file.ply --name surface -q
 sanitize='-fsanitize=address,undefined -fno-sanitize-recover=undefined'
@@ -98,14 +98,14 @@ if "$cc" $sanitize tiny.c -o tiny 2>/dev/null && ./tiny 2>/dev/null; then
 fi
 for place in $places; do
     serve "$place"
-    closed served.glb
-    grep -q "^200: $(wc -c <served.glb) bytes for $(wc -c <sphere.nrrd)$" served || fail "$(cat served)"
+    closed served.mesh
+    grep -q "^200: $(wc -c <served.mesh) bytes for $(wc -c <sphere.nrrd)$" served || fail "$(cat served)"
     stream "$place"
     cmp through.ply file.ply
     grep -q "^Content-Length: $(wc -c <file.ply)$" through || fail "$(cat through)"
     for bytes in 0 20 2000; do # uploads that break off
         code=0
-        head -c $bytes sphere.nrrd | "$place"serve_upload scan.nrrd >none 2>error || code=$?
+        head -c $bytes sphere.nrrd | "$place"serve_upload scan.nrrd ply >none 2>error || code=$?
         [ $code = 3 ] && [ ! -s none ] && grep -q '^422: scan.nrrd: ' error || fail "$bytes bytes: $code"
     done
     code=0

@@ -1,9 +1,10 @@
 /* Answers an upload: bytes of a volume come in, bytes of a mesh go out, and no file is named.
  *
- *     serve_upload NAME < scan.nii.gz > mesh.glb
+ *     serve_upload NAME FORMAT < scan.nii.gz > mesh.glb
  *
- * NAME is that of the uploaded file, as a browser sends it. A server would call answer_upload() for
- * each request; here standard input and output stand in for the network. */
+ * NAME is that of the uploaded file, as a browser sends it; FORMAT is the answer's, such as glb.
+ * A server would call answer_upload() for each request; here standard input and output stand in
+ * for the network. */
 #include <cubewright/cubewright.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -35,9 +36,10 @@ static cw_status find_isovalue(const cw_volume *volume, double *isovalue, cw_err
     return st;
 }
 
-/* Makes a GLB file of the surface, to be freed with cw_bytes_free(). */
+/* Makes a file of the surface in memory, to be freed with cw_bytes_free(). */
 static cw_status answer_upload(const void *bytes, size_t size, const char *name,
-                               uint8_t **answer, size_t *answer_size, cw_error *err)
+                               const char *format, uint8_t **answer, size_t *answer_size,
+                               cw_error *err)
 {
     cw_volume volume = {0};
     cw_mesh mesh = {0};
@@ -48,7 +50,8 @@ static cw_status answer_upload(const void *bytes, size_t size, const char *name,
     if (st == CW_OK)
         st = cw_extract(&volume, &desc, &mesh, NULL, err);
     if (st == CW_OK)
-        st = cw_mesh_write_memory("surface.glb", &mesh, NULL, answer, answer_size, err);
+        st = cw_mesh_write_memory(NULL, &mesh, &(cw_write_desc){.format = format}, answer,
+                                  answer_size, err);
     cw_mesh_free(&mesh);
     cw_volume_free(&volume);
     return st;
@@ -56,9 +59,9 @@ static cw_status answer_upload(const void *bytes, size_t size, const char *name,
 
 int main(int argc, char **argv)
 {
-    char *upload = argc == 2 ? malloc(MAX_UPLOAD) : NULL;
+    char *upload = argc == 3 ? malloc(MAX_UPLOAD) : NULL;
     if (!upload) {
-        fprintf(stderr, "usage: serve_upload NAME < VOLUME > MESH.glb\n");
+        fprintf(stderr, "usage: serve_upload NAME FORMAT < VOLUME > MESH\n");
         return 2;
     }
     cw_error err = {0};
@@ -66,7 +69,7 @@ int main(int argc, char **argv)
     size_t answer_size = 0;
     cw_memory_limit((size_t)2 << 30); /* of all requests together */
     const size_t size = fread(upload, 1, MAX_UPLOAD, stdin);
-    cw_status st = answer_upload(upload, size, argv[1], &answer, &answer_size, &err);
+    cw_status st = answer_upload(upload, size, argv[1], argv[2], &answer, &answer_size, &err);
     if (st == CW_OK && fwrite(answer, 1, answer_size, stdout) == answer_size)
         fprintf(stderr, "200: %zu bytes for %zu\n", answer_size, size);
     else /* the message names the upload as its sender does, and no path of ours */

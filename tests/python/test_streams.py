@@ -109,7 +109,11 @@ class Streams(Case):
         for suffix in ("stl", "ply", "glb", "gltf", "3mf", "vtp"):
             path = self.folder / f"mesh.{suffix}"
             with self.subTest(suffix):
-                cw.write(path, mesh)
+                try:
+                    cw.write(path, mesh)
+                except cw.Error as error:
+                    self.assertEqual(error.status, cw.Status.UNSUPPORTED)
+                    continue
                 plain, slow = io.BytesIO(), Counted(piece=30000)
                 self.assertEqual(cw.write(plain, mesh, format=suffix).dropped, 0)
                 cw.write(slow, mesh, format=suffix)

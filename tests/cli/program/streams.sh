@@ -1,5 +1,8 @@
 # `-` is standard input and output: the bytes and codes are those of files, messages go to standard error,
 # and nothing is left behind.
+for feature in simplify glb level-set; do
+    cubewright version --features | grep -q "^$feature *yes" || { echo "this build has no $feature" >&2; exit 77; }
+done
 . "$TESTS/support/wait.sh"
 TMPDIR=$PWD/temporary
 export TMPDIR

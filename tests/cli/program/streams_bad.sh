@@ -1,4 +1,5 @@
 # Uses of `-` that are refused: one line each, the exit code, and no file.
+cubewright version --features | grep -q '^glb *yes' || { echo "this build writes no glTF" >&2; exit 77; }
 cubewright make torus -o t.nrrd --dims 16 -q
 cubewright extract t.nrrd --iso 0 -o mesh.stl -q
 run() {

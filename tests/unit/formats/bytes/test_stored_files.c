@@ -235,9 +235,11 @@ static void buffers_that_are_missing_are_named(void **state)
         "mtllib red.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl red\nf 1 2 3\n";
     cw_mesh mesh;
     cw_error err = {0};
+    const bool reads_gltf = cw_mesh_format(NULL, "gltf")->in_this_build;
     assert_fails(cw_mesh_read_memory(&(cw_byte_source){.bytes = gltf, .size = sizeof gltf - 1},
                                      NULL, &mesh, NULL, &err),
-                 CW_ERR_UNSUPPORTED, "(memory): m.bin: this file is missing", err);
+                 CW_ERR_UNSUPPORTED,
+                 reads_gltf ? "(memory): m.bin: this file is missing" : "(memory): ", err);
     assert_fails(cw_mesh_read_memory(
                      &(cw_byte_source){.bytes = obj, .size = sizeof obj - 1, .name = "m.obj"},
                      NULL, &mesh, NULL, &err),
