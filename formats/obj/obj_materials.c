@@ -213,12 +213,12 @@ cw_status cwi_obj_read_materials(cwi_obj_materials *m, const char *name, cw_erro
         m->is_missing = true;
     if (opens)
         close(fd);
-    if (st == CW_ERR_FORMAT || st == CW_ERR_IO || st == CW_ERR_UNSAFE) {
+    if (st == CW_ERR_FORMAT || st == CW_ERR_IO || st == CW_ERR_UNSAFE ||
+        st ==
+            CW_ERR_UNSUPPORTED) { /* unsupported: bytes without a path have no files beside them */
         m->is_missing = true;
         st = CW_OK;
     }
-    if (st == CW_ERR_UNSUPPORTED)
-        cwi_fail_in(err, st, name);
     for (size_t i = 0; i < m->count; i++)
         m->items[i].text = m->names + m->items[i].name;
     if (m->count)

@@ -510,8 +510,8 @@ CW_NODISCARD CW_API cw_status cw_mesh_read(const char *path, const cw_mesh_read_
                                            cw_mesh *mesh, cw_mesh_file *file, cw_error *err);
 
 /* Reads a mesh from bytes in memory or from a function of the caller, as cw_volume_read_memory() does.
- * Buffers of glTF in other files, materials of OBJ (.mtl) and pieces of VTK are CW_ERR_UNSUPPORTED, named
- * by the message. Pictures of glTF in other files are left out (cw_mesh_file.left_out), as where such a
+ * Buffers of glTF in other files and pieces of VTK are CW_ERR_UNSUPPORTED, named by the message. Pictures
+ * of glTF in other files and materials of OBJ (.mtl) are left out (cw_mesh_file.left_out), as where such a
  * file is missing. For parts see cw_mesh_read_desc.stored and cw_parts_read().
  *
  * source   borrowed until the call returns

@@ -38,7 +38,7 @@ from ._handles import Closed, close_handles
 from ._label_scores import extract_label_scores
 from ._library import lib as _lib
 from ._memory import memory_limit, memory_overflow, memory_overflowed, memory_used
-from ._mesh import Mesh
+from ._mesh import Levels, Mesh
 from ._orient import Oriented, Stand, orient_print
 from ._pieces import Piece, Pieces, cut_pieces
 from ._place import crease_normals, split, transform
@@ -71,6 +71,7 @@ __all__ = [
     "Label",
     "LabelChange",
     "LabelSurfaces",
+    "Levels",
     "LookDifference",
     "Mesh",
     "Oriented",

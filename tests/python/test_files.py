@@ -188,6 +188,25 @@ class Volumes(Case):
         self.assertEqual(part.origin, (1, 2, 3))
         self.assertTrue(np.array_equal(cw.read_volume(path, raw=raw, coarsen=2).array, ball[::2, ::2, ::2]))
 
+    def test_levels_of_detail_and_animations_of_gltf(self):
+        self.need("gltf")
+        ball = cw.extract(make_ball(), 0)
+        coarse = cw.Mesh.from_arrays(ball.vertices, ball.triangles[::2])
+        levels = cw.Levels()
+        levels.extend([ball, coarse])
+        cw.write(self.folder / "levels.glb", levels)
+        self.assertIn(b"MSFT_lod", (self.folder / "levels.glb").read_bytes())
+        self.assertEqual(len(cw.read_mesh(self.folder / "levels.glb")), len(ball))
+        steps = [cw.Part(f"step {n}", mesh, time=0.5 * n) for n, mesh in enumerate((ball, coarse, ball))]
+        cw.write(self.folder / "steps.glb", steps)
+        self.assertIn(b'"animations"', (self.folder / "steps.glb").read_bytes())
+        with self.fails(cw.Status.ARGUMENT):
+            cw.write(self.folder / "steps.stl", steps)
+        with self.fails(cw.Status.ARGUMENT):
+            cw.write(self.folder / "back.glb", [steps[1], steps[0]])
+        with self.fails(cw.Status.ARGUMENT):
+            cw.write(self.folder / "gap.glb", [cw.Part("fine", ball), cw.Part("coarse", coarse, level=2)])
+
     def test_levels_of_n5_stores(self):
         store = self.folder / "image.n5"
         fine = np.arange(5 * 4 * 6, dtype=">u2").reshape(5, 4, 6)
