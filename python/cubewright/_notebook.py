@@ -1,4 +1,4 @@
-"""What notebooks show of meshes and volumes: a small picture, and facts beside it."""
+"""Shows meshes and volumes in notebooks: a small picture, and facts beside it."""
 
 from __future__ import annotations
 
