@@ -3,6 +3,7 @@
 #include "simplify/smoothing/mesh_smooth.h"
 
 #include "core/base/memory.h"
+#include "core/base/parallel.h"
 #include "core/base/status.h"
 #include "core/geometry/bvh.h"
 #include "core/geometry/triangle_intersect.h"
@@ -13,6 +14,8 @@
 
 /* Rounds that put back the triangles that meet alone; later ones put back those around them, too. */
 enum { NARROW_ROUNDS = 4 };
+
+enum { CHUNK = 8192 }; /* triangles that a thread looks at at a time */
 
 typedef enum vertex_state { MOVED, BACK, JUST_BACK, GOES_BACK } vertex_state;
 
@@ -68,18 +71,53 @@ static bool has_size(const float *positions, const uint32_t *corners)
     return false;
 }
 
-/* Puts back the triangles that lost their area, which may flatten those beside them. */
+static bool has_lost_size(const cwi_smoother *s, size_t t)
+{
+    const uint32_t *corners = s->mesh->triangles + 3 * t;
+    return !has_size(s->rounded, corners) && has_size(s->mesh->positions, corners);
+}
+
+static size_t count_chunks(const cw_mesh *mesh)
+{
+    return (mesh->triangle_count + CHUNK - 1) / CHUNK;
+}
+
+static size_t chunk_end(const cw_mesh *mesh, size_t chunk)
+{
+    const size_t end = (chunk + 1) * CHUNK;
+    return end < mesh->triangle_count ? end : mesh->triangle_count;
+}
+
+typedef struct flat_search {
+    const cwi_smoother *s;
+    bool found;
+} flat_search;
+
+static void find_flat(void *context, size_t chunk)
+{
+    flat_search *f = context;
+    for (size_t t = chunk * CHUNK; t < chunk_end(f->s->mesh, chunk); t++)
+        if (has_lost_size(f->s, t)) {
+            cwi_set_flag(&f->found);
+            return;
+        }
+}
+
+/* Puts back the triangles that lost their area, which may flatten those beside them. Few meshes
+ * have any: all threads look for one first. */
 static void put_flat_triangles_back(undo_state *u)
 {
     const cw_mesh *mesh = u->s->mesh;
+    flat_search f = {.s = u->s};
     size_t back;
+    cwi_parallel_for_all(count_chunks(mesh), CHUNK, u->s->desc.threads, find_flat, &f);
+    if (!f.found)
+        return;
     do {
         back = u->back;
-        for (size_t t = 0; t < mesh->triangle_count; t++) {
-            const uint32_t *corners = mesh->triangles + 3 * t;
-            if (!has_size(u->s->rounded, corners) && has_size(mesh->positions, corners))
+        for (size_t t = 0; t < mesh->triangle_count; t++)
+            if (has_lost_size(u->s, t))
                 put_triangle_back(u, t);
-        }
     } while (u->back != back);
 }
 
@@ -138,28 +176,64 @@ static bool visit_node(void *context, size_t node)
     return !o->found;
 }
 
+typedef struct near_search {
+    const undo_state *u;
+    const cwi_boxes *tree; /* of triangles that changed */
+    uint32_t *ids;         /* the triangles near them, from the first of each chunk on */
+    size_t *counts;        /* of each chunk */
+} near_search;
+
+static void find_near(void *context, size_t chunk)
+{
+    const near_search *f = context;
+    const cw_mesh *mesh = f->u->s->mesh;
+    overlap o = {.tree = f->tree};
+    size_t count = 0;
+    for (size_t t = chunk * CHUNK; t < chunk_end(mesh, chunk); t++) {
+        cwi_boxes_triangle(f->u->s->rounded, mesh->triangles + 3 * t, o.box);
+        o.found = false;
+        cwi_boxes_visit(f->tree, o.box, 0, visit_node, &o);
+        if (o.found)
+            f->ids[chunk * CHUNK + count++] = (uint32_t)t;
+    }
+    f->counts[chunk] = count;
+}
+
+/* Fills the selection with the triangles near those of a tree. */
+static cw_status select_near(const undo_state *u, const cwi_boxes *tree, selection *chosen,
+                             cw_error *err)
+{
+    const cw_mesh *mesh = u->s->mesh;
+    const size_t chunks = count_chunks(mesh);
+    near_search f = {.u = u, .tree = tree};
+    f.ids = chosen->ids = cwi_alloc_array(mesh->triangle_count, sizeof *f.ids);
+    f.counts = cwi_alloc_array(chunks, sizeof *f.counts);
+    if (f.ids && f.counts) {
+        cwi_parallel_for_all(chunks, CHUNK, u->s->desc.threads, find_near, &f);
+        for (size_t chunk = 0; chunk < chunks; chunk++) {
+            memmove(f.ids + chosen->count, f.ids + chunk * CHUNK,
+                    f.counts[chunk] * sizeof *f.ids);
+            chosen->count += f.counts[chunk];
+        }
+        chosen->triangles = cwi_alloc_array(chosen->count, 3 * sizeof *chosen->triangles);
+    }
+    cwi_free(f.counts);
+    if (!chosen->triangles)
+        return cwi_fail_memory(err);
+    for (size_t n = 0; n < chosen->count; n++)
+        memcpy(chosen->triangles + 3 * n, mesh->triangles + 3 * (size_t)chosen->ids[n],
+               3 * sizeof *chosen->triangles);
+    return CW_OK;
+}
+
 /* Selects the triangles that changed, and those whose boxes meet theirs: all pairs of which one
  * triangle changed are among them. */
 static cw_status select_near_changed(const undo_state *u, selection *chosen, cw_error *err)
 {
-    const cw_mesh *mesh = u->s->mesh;
     cwi_boxes tree = {0};
     cw_status st = sort_changed(u, &tree, err);
-    overlap o = {.tree = &tree};
-    chosen->ids = cwi_alloc_array(mesh->triangle_count, sizeof *chosen->ids);
-    for (size_t t = 0; t < mesh->triangle_count && chosen->ids && st == CW_OK; t++) {
-        cwi_boxes_triangle(u->s->rounded, mesh->triangles + 3 * t, o.box);
-        o.found = false;
-        cwi_boxes_visit(&tree, o.box, 0, visit_node, &o);
-        if (o.found)
-            chosen->ids[chosen->count++] = (uint32_t)t;
-    }
-    chosen->triangles = cwi_alloc_array(chosen->count, 3 * sizeof *chosen->triangles);
-    if (st == CW_OK && (!chosen->ids || !chosen->triangles))
-        st = cwi_fail_memory(err);
-    for (size_t n = 0; n < chosen->count && st == CW_OK; n++)
-        memcpy(chosen->triangles + 3 * n, mesh->triangles + 3 * (size_t)chosen->ids[n],
-               3 * sizeof *chosen->triangles);
+    if (st == CW_OK)
+        st = select_near(u, &tree, chosen, err);
     cwi_boxes_free(&tree);
     return st;
 }
