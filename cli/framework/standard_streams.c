@@ -320,7 +320,7 @@ cw_status cli_streams_open(const cli_command *command, const cli_common *args,
                            const cli_given_option *options, cw_error *err)
 {
     size_t inputs;
-    const cli_given_option *output;
+    const cli_given_option *output = NULL;
     cw_status st = check_inputs(command, args, options, &inputs, err);
     if (st == CW_OK)
         st = check_outputs(options, args->given_count, &output, err);
