@@ -164,25 +164,22 @@ static void load_tile(const work *k, const size_t first[3], const size_t size[3]
 }
 
 /* Takes the voxels of one window out of a set and adds those of another. */
-static void exchange_windows(rank_set *set, const rank_set *leaves, const rank_set *joins,
-                             size_t words)
+static void exchange_windows(rank_set *restrict set, const rank_set *leaves,
+                             const rank_set *joins, size_t words)
 {
-#pragma omp simd
     for (size_t n = 0; n < words / BLOCK * BLOCK; n++)
         set->bits[n] ^= leaves->bits[n] ^ joins->bits[n];
-#pragma omp simd
     for (size_t n = 0; n < words / BLOCK * BLOCK; n++)
         set->up_to[n] = (uint16_t)(set->up_to[n] + joins->up_to[n] - leaves->up_to[n]);
 }
 
-static void flip_rank(const bench *b, rank_set *set, uint16_t rank, uint16_t by)
+static void flip_rank(const bench *b, rank_set *restrict set, uint16_t rank, uint16_t by)
 {
     if (rank == NO_RANK)
         return;
     const size_t word = rank / 64;
     const uint16_t *step = b->step + MAX_WORDS - word;
     set->bits[word] ^= (uint64_t)1 << rank % 64;
-#pragma omp simd
     for (size_t n = 0; n < b->words / BLOCK * BLOCK; n++)
         set->up_to[n] = (uint16_t)(set->up_to[n] + by * step[n]);
 }
