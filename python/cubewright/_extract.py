@@ -41,6 +41,7 @@ from ._options import (
 from ._progress import Progress, Reporter
 from ._render import copy_image
 from ._simplify import describe_smoothing, take_counts
+from ._views import set_views
 from ._volume import Volume, number_labels, take_volume
 
 INSIDE = ("above", "below")
@@ -101,11 +102,17 @@ class Settings:
     cut_plane: tuple[Sequence[float], Sequence[float]] | None = None
     engrave: str | dict[str, Any] | None = None
     simplify: int | float | str | None = None
+    camera: Any = None
+    pixel_error: float = 0.0
+    shading: float = 1.5
+    cull: bool = False
+    size: Sequence[int] = (1280, 720)
     uv: bool | dict[str, Any] = False
     crease_angle: float | str | None = None
     color_by: AnyVolume | None = None
     colormap: str = "viridis"
     color_range: tuple[float, float] | None = None
+    check: bool = False
     max_triangles: int = 0
     max_bytes: int = 0
     threads: int = 0
@@ -131,6 +138,7 @@ class Settings:
             min_volume_mm3=take_space("min_volume", self.min_volume),
             largest=take_count("largest", self.largest),
             fill_voids=take_flag("fill_voids", self.fill_voids),
+            check=take_flag("check", self.check),
         )
         if self.close_handles is not None:
             desc.close_handles = pointer(describe_handles(self.close_handles, volume=source))
@@ -143,7 +151,20 @@ class Settings:
         if self.engrave is not None:
             engraved = {"text": self.engrave} if isinstance(self.engrave, str) else self.engrave
             desc.engrave = pointer(describe_text(**engraved))
-        if isinstance(self.simplify, (float, str)):
+        if self.camera is not None:
+            set_views(
+                desc,
+                source,
+                camera=self.camera,
+                size=self.size,
+                pixel_error=self.pixel_error,
+                shading=self.shading,
+                cull=self.cull,
+                simplify=self.simplify,
+            )
+        elif self.pixel_error or self.cull:
+            raise TypeError("pixel_error and cull need a camera")
+        elif isinstance(self.simplify, (float, str)):
             error = take_length("simplify", self.simplify, volume=source)
             desc.simplify = pointer(c.cw_simplify_desc(error_mm=error))
         elif self.simplify is not None:
@@ -177,11 +198,17 @@ def extract(
     cut_plane: tuple[Sequence[float], Sequence[float]] | None = None,
     engrave: str | dict[str, Any] | None = None,
     simplify: int | float | str | None = None,
+    camera: Any = None,
+    pixel_error: float = 0.0,
+    shading: float = 1.5,
+    cull: bool = False,
+    size: Sequence[int] = (1280, 720),
     uv: bool | dict[str, Any] = False,
     crease_angle: float | str | None = None,
     color_by: AnyVolume | None = None,
     colormap: str = "viridis",
     color_range: tuple[float, float] | None = None,
+    check: bool = False,
     component: int = 0,
     step: int = 0,
     max_triangles: int = 0,
@@ -214,11 +241,16 @@ def extract(
     engrave     a text, or a dict of the keywords of engrave(): {"text": "L", "size": "5mm", "at": (0, 0, 10)}
     simplify    a float: error limit in mm; a text: the same with its unit, "0.1mm" or "0.5vox"; an int:
                 triangle count. See simplify()
+    camera      one of render(), or a list of them: keep the detail that their pictures of `size` pixels need.
+                Visible surface moves by at most pixel_error pixels, and its normals by `shading` degrees; simplify
+                is then the error out of sight, as a length. cull: leave out what no camera sees, and with it alone
+                keep the rest as it is
     uv          make texture coordinates: True, or a dict of the keywords of atlas(): {"size": 1024}
     crease_angle  degrees: let normals part at edges with a larger angle, as of crease_normals(); "caps": where
                 caps close the surface at the end of the volume
     color_by    another volume, whose values become scalars and colours. See color_by()
     colormap, color_range  the map, and the values of its ends; None: those of the vertices
+    check       measure it: mesh.facts["quality"], by the names of check().quality
     component, step  of volumes with several, from 0
     max_triangles, max_bytes  fail beyond, before more memory is taken; 0: no limit
     threads     0: all; progress: see Progress

@@ -423,6 +423,32 @@ class Progress(Case):
         gc.collect()
         self.assertEqual(cw.memory_used(), before)
 
+    def test_cameras(self):
+        ball = make_ball()
+        full = cw.extract(ball, 0)
+        seen = cw.extract(ball, 0, camera="front", cull=True)
+        self.assertLess(len(seen), 0.7 * len(full))
+        self.assertGreater(seen.facts["culled"], 0.3 * len(full))
+        both = cw.extract(ball, 0, camera=["front", "back"], cull=True, size=(640, 480))
+        self.assertGreater(len(both), 1.5 * len(seen))
+        self.assertLess(len(cw.extract(ball, 0, camera=(0, 20), cull=True)), len(both))
+        for wrong in ({"cull": True}, {"pixel_error": 1}, {"camera": "front"}):
+            with self.assertRaises(TypeError):
+                cw.extract(ball, 0, **wrong)
+        self.need("simplify")
+        coarse = cw.extract(ball, 0, camera="front", pixel_error=4, shading=60, size=(320, 240))
+        self.assertTrue(cw.check(coarse).holds)
+        self.assertLess(len(coarse), 0.5 * len(full))
+        bounded = cw.extract(ball, 0, camera="front", pixel_error=4, shading=60, simplify="0.02mm", size=(320, 240))
+        self.assertGreater(len(bounded), len(coarse))
+
+    def test_the_check_of_the_pipeline_is_that_of_check(self):
+        mesh = cw.extract(make_ball(), 0, check=True)
+        found = cw.check(mesh).quality
+        self.assertEqual(mesh.facts["ran"][-1], "check")
+        for name in ("area_mm2", "volume_mm3", "euler", "open_edges"):
+            self.assertEqual(mesh.facts["quality"][name], found[name], name)
+
     def test_a_forked_process_may_call_while_its_parent_does(self):
         volume = cw.make("gyroid", dims=64)
         wanted = cw.extract(volume, 0, threads=4).vertices.tobytes()
