@@ -287,7 +287,7 @@ static cw_status check_bytes(const cli_given_option *o, const cli_given_option *
     return CW_OK;
 }
 
-/* Finds the option whose file goes to standard output; NULL: there is none. */
+/* Finds the option, if any, whose file goes to standard output. */
 static cw_status check_outputs(const cli_given_option *options, size_t count,
                                const cli_given_option **found, cw_error *err)
 {

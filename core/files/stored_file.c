@@ -14,6 +14,13 @@
 
 enum { PIECE_BYTES = 1 << 20 };
 
+/* Passes on the failure of a function of the caller, which need not say why. */
+static cw_status fail_callback(cw_status st, const cw_error *why, const char *otherwise,
+                               cw_error *err)
+{
+    return cwi_fail(err, st, "%s", why->message[0] ? why->message : otherwise);
+}
+
 /* --- reading ------------------------------------------------------------------------------ */
 
 /* A stored file that is being filled. */
@@ -28,7 +35,7 @@ static cw_status open_storage(const char *folder, int *fd, cw_error *err)
     return folder ? cwi_unnamed_open(folder, fd, err) : cwi_unnamed_open_memory(fd, err);
 }
 
-static cw_status keep(const filling *f, const void *bytes, size_t size)
+static cw_status append_piece(const filling *f, const void *bytes, size_t size)
 {
     const cw_byte_source *s = f->source;
     const uint64_t sum = f->file->size + size;
@@ -51,7 +58,7 @@ static cw_status keep_array(const filling *f)
     cw_status st = CW_OK;
     for (uint64_t at = 0; at < s->size && st == CW_OK; at += PIECE_BYTES) {
         const uint64_t left = s->size - at;
-        st = keep(f, from + at, left < PIECE_BYTES ? (size_t)left : PIECE_BYTES);
+        st = append_piece(f, from + at, left < PIECE_BYTES ? (size_t)left : PIECE_BYTES);
     }
     return st;
 }
@@ -65,7 +72,7 @@ static cw_status read_piece(const filling *f, unsigned char *piece, size_t capac
     *got = 0;
     cw_status st = s->read(s->user, piece, capacity, got, &why);
     if (st != CW_OK)
-        return cwi_fail(f->err, st, "%s", why.message[0] ? why.message : "its source failed");
+        return fail_callback(st, &why, "its source failed", f->err);
     if (*got > capacity)
         return cwi_fail(f->err, CW_ERR_ARGUMENT,
                         "source->read reports %zu bytes; there is room for %zu", *got,
@@ -85,7 +92,7 @@ static cw_status keep_pieces(const filling *f, unsigned char *piece)
             capacity = (size_t)(stated - f->file->size) + 1;
         st = read_piece(f, piece, capacity, &got);
         if (st == CW_OK && got)
-            st = keep(f, piece, got);
+            st = append_piece(f, piece, got);
     }
     if (st != CW_OK || !stated || f->file->size == stated)
         return st;
@@ -204,9 +211,7 @@ cw_status cwi_byte_output_open(cwi_byte_output *file, const cw_byte_sink *sink,
 
 static cw_status fail_sink(cw_status st, const cw_error *why, cw_error *err)
 {
-    return st == CW_OK
-               ? CW_OK
-               : cwi_fail(err, st, "%s", why->message[0] ? why->message : "its sink failed");
+    return st == CW_OK ? CW_OK : fail_callback(st, why, "its sink failed", err);
 }
 
 static cw_status deliver_pieces(const cwi_byte_output *file, uint64_t size, void *piece,

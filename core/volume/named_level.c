@@ -95,11 +95,12 @@ cw_status cw_statistics_level(const cw_statistics *statistics, const cw_volume *
 {
     CWI_REQUIRE(err, statistics, volume, name, level);
     const cw_statistics *s = statistics;
-    char missing[CWI_MISSING_TEXT];
     double percent;
-    cwi_tell_missing(volume, s, missing);
-    if (!s->finite)
+    if (!s->finite) {
+        char missing[CWI_MISSING_TEXT];
+        cwi_tell_missing(volume, s, missing);
         return cwi_fail(err, CW_ERR_EMPTY, "no voxel has a finite value%s", missing);
+    }
     for (int n = 0; n < CLASS_LEVELS; n++)
         if (strcmp(class_levels[n].name, name) == 0)
             return find_class_level(s, volume, n, level, err);

@@ -8,7 +8,7 @@
 /* An open file, and the folder in which it was named. */
 typedef struct cwi_input {
     const char *path; /* borrowed */
-    int folder; /* folder of the side files; -1: there are none, as the file has no path */
+    int folder;       /* folder of the side files, or -1 for a file without a path */
     int fd;
     uint64_t size;                 /* number of bytes that the system reports */
     bool allow_external;           /* side files may lie elsewhere */

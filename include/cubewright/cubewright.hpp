@@ -234,7 +234,7 @@ public:
     {
         return {(*this)->positions, 3 * (*this)->vertex_count};
     }
-    // Unit normals, outward; empty: there are none.
+    // Unit normals, outward. Empty for a mesh without normals.
     std::span<float> normals() const
     {
         return {(*this)->normals, (*this)->normals ? 3 * (*this)->vertex_count : 0};

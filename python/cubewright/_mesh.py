@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import copy as copying
 from ctypes import POINTER, byref, c_double, c_float, c_uint8, c_uint32
 from typing import Any
 
@@ -233,14 +232,10 @@ class Mesh:
         return True  # also without triangles
 
     def __reduce__(self) -> Any:
-        """Pickles copies of the arrays, of the attributes, and of the facts."""
+        """Pickles, and deep-copies, the arrays, the attributes, and the facts."""
         arrays = {name: np.array(value) for name in ARRAYS if (value := self._array(name)) is not None}
         arrays["origin"] = np.array(self.origin)
         return restore_mesh, (arrays, np.array(self._struct.affine), self.attributes.pack(), self.facts)
-
-    def __deepcopy__(self, memo: dict[int, Any]) -> Mesh:
-        _, arguments = self.__reduce__()
-        return restore_mesh(*copying.deepcopy(arguments, memo))
 
     def _repr_png_(self) -> bytes | None:
         """Returns a picture for notebooks; None without triangles."""

@@ -73,7 +73,7 @@ def describe_mesh(mesh: Mesh) -> str:
         "vertices": f"{len(mesh.vertices):,}",
         "box": " x ".join(f"{side:.6g}" for side in high - low) + " mm",
         "area": f"{mesh.area:.6g} mm\u00b2",
-        "volume": "none: not closed" if enclosed is None else f"{enclosed:.6g} mm\u00b3",
+        "volume": "not closed" if enclosed is None else f"{enclosed:.6g} mm\u00b3",
     }
     return make_html("Mesh", facts, draw_mesh(mesh))
 

@@ -91,7 +91,7 @@ class Bridge:
                 taken = self.file.write(left)
                 if taken == 0:
                     raise BlockingIOError("write() took no byte")
-                left = b"" if taken is None else left[taken:]  # None: of objects that do not count
+                left = b"" if taken is None else left[taken:]  # some objects do not count
             self.left = (self.left or 0) - size
             self.ended = self.left == 0
 
@@ -133,7 +133,7 @@ def keep_bytes(data: Any, name: bytes | None) -> Any:
 
 @contextmanager
 def open_source(source: Source, name: str | None, desc: Any) -> Iterator[bytes | None]:
-    """Yields the path to read; of bytes and file objects it is None, and desc.stored has them."""
+    """Yields the path to read, or keeps bytes and file objects in desc.stored and yields None."""
     if isinstance(source, (bytes, bytearray, memoryview)):
         stored = keep_bytes(source, name_file(None, name))
     elif is_file(source, "read"):
@@ -152,7 +152,7 @@ def open_source(source: Source, name: str | None, desc: Any) -> Iterator[bytes |
 
 @contextmanager
 def open_target(target: Target, desc: Any) -> Iterator[bytes | None]:
-    """Yields the path to write; of a file object it is its name or None, and desc.sink takes the bytes."""
+    """Yields the path to write, or lets desc.sink pass the bytes to a file object and yields its name or None."""
     if not is_file(target, "write"):
         yield take_path("path", target)
         return

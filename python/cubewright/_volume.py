@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import copy as copying
 from collections.abc import Sequence
 from ctypes import POINTER, byref, c_double, c_int64, c_uint32, c_void_p
 from dataclasses import dataclass, field
@@ -452,7 +451,7 @@ class Volume:
         return [np.array(planes[:count]) for planes, count in zip(self._struct.coordinates, self._resolved.dim)]
 
     def __reduce__(self) -> Any:
-        """Pickles a copy of the voxels, and their place."""
+        """Pickles, and deep-copies, the voxels and their place."""
         if self.kind not in ("even", "rectilinear"):
             raise TypeError(f"a volume of the kind {self.kind} cannot be pickled; dense() of a sparse grid can")
         v = self._resolved
@@ -468,10 +467,6 @@ class Volume:
         }
         kept = {"known": self._struct.known, "labels": self.labels, "format": self.format, "ids": self.ids}
         return restore_volume, (state, kept)
-
-    def __deepcopy__(self, memo: dict[int, Any]) -> Volume:
-        _, arguments = self.__reduce__()
-        return restore_volume(*copying.deepcopy(arguments, memo))
 
     def _repr_png_(self) -> bytes | None:
         """Returns a picture for notebooks: the middle slices."""

@@ -71,6 +71,21 @@ cw_volume test_changing_volume(cw_type type, const size_t dim[3])
     return v;
 }
 
+cw_volume test_some_changing_volume(int round)
+{
+    static const size_t sizes[][3] = {{2, 2, 2},    {7, 8, 9},    {15, 16, 17}, {33, 40, 24},
+                                      {64, 31, 20}, {80, 33, 31}, {130, 9, 20}, {70, 5, 71}};
+    return test_changing_volume((cw_type)(round % CW_TYPE_COUNT), sizes[rand() % 8]);
+}
+
+const cwi_engine *test_some_engine(int round)
+{
+    size_t engines = 0;
+    while (cwi_engine_at(engines))
+        engines++;
+    return cwi_engine_at((size_t)round % engines);
+}
+
 cw_extract_desc test_random_settings(const cw_volume *v)
 {
     return (cw_extract_desc){.isovalue = (rand() % 3 ? 50.3 : floor(test_random_number(100))) *

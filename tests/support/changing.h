@@ -2,6 +2,7 @@
 #ifndef TESTS_CHANGING_H
 #define TESTS_CHANGING_H
 
+#include "extract/dense/isa_dispatch.h"
 #include "support/support.h"
 
 /* Patterns that boxes are painted with. */
@@ -23,6 +24,12 @@ void test_paint_all(cw_volume *volume, test_pattern pattern);
 
 /* A volume with a random pattern, slope and no-data number; free it. */
 cw_volume test_changing_volume(cw_type type, const size_t dim[3]);
+
+/* The same, with a type by the round of a test, and of random dimensions; free it. */
+cw_volume test_some_changing_volume(int round);
+
+/* One of the engines of this machine, in turn. */
+const cwi_engine *test_some_engine(int round);
 
 /* Random settings, by which most patterns have a surface. */
 cw_extract_desc test_random_settings(const cw_volume *volume);

@@ -8,17 +8,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const cwi_engine *some_engine(int round)
-{
-    size_t engines = 0;
-    while (cwi_engine_at(engines))
-        engines++;
-    return cwi_engine_at((size_t)round % engines);
-}
-
-static const size_t sizes[][3] = {{2, 2, 2},    {7, 8, 9},    {15, 16, 17}, {33, 40, 24},
-                                  {64, 31, 20}, {80, 33, 31}, {130, 9, 20}, {70, 5, 71}};
-
 /* Keeps the latest version of each brick, as a renderer does. */
 typedef struct keeper {
     cw_mesh *bricks;
@@ -140,8 +129,8 @@ static void bricks_together_are_the_surface(void **state)
     (void)state;
     test_seed(18);
     for (int round = 0; round < 60; round += test_is_short() ? 4 : 1) {
-        const cwi_engine *engine = some_engine(round);
-        cw_volume v = test_changing_volume((cw_type)(round % CW_TYPE_COUNT), sizes[rand() % 8]);
+        const cwi_engine *engine = test_some_engine(round);
+        cw_volume v = test_some_changing_volume(round);
         cw_extractor *e;
         cw_error err = {0};
         cw_mesh mesh = {0}, once = {0};

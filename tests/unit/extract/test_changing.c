@@ -9,24 +9,13 @@
 #include <math.h>
 #include <stdlib.h>
 
-static const cwi_engine *some_engine(int round)
-{
-    size_t engines = 0;
-    while (cwi_engine_at(engines))
-        engines++;
-    return cwi_engine_at((size_t)round % engines);
-}
-
-static const size_t sizes[][3] = {{2, 2, 2},    {7, 8, 9},    {15, 16, 17}, {33, 40, 24},
-                                  {64, 31, 20}, {80, 33, 31}, {130, 9, 20}, {70, 5, 71}};
-
 static void each_frame_is_as_from_scratch(void **state)
 {
     (void)state;
     test_seed(17);
     for (int round = 0; round < 60; round += test_is_short() ? 4 : 1) {
-        const cwi_engine *engine = some_engine(round);
-        cw_volume v = test_changing_volume((cw_type)(round % CW_TYPE_COUNT), sizes[rand() % 8]);
+        const cwi_engine *engine = test_some_engine(round);
+        cw_volume v = test_some_changing_volume(round);
         cw_extractor *e;
         cw_mesh mesh = {0}, once = {0}; /* filled again and again */
         cw_error err = {0};
